@@ -74,8 +74,8 @@ fn rows_without_a_good_name_are_refused_before_anything_is_written() {
         ("con", "row 2, column name: “con.svg” is the name of a device"),
         ("a\nLpt¹.x", "row 3, column name: “Lpt¹.x.svg” is the name of a device"),
         ("a\nwhat?", "has ?"),
-        ("a\n\"\",x", "row 3, column name: is empty"),
-        ("Anna\nb\nAnna", "rows 2 and 4 give one file"),
+        ("a\n\"\",x", "row 3, column name is empty"),
+        ("Anna\nb\nAnna", "rows 2 and 4 give the same file"),
         ("Anna\nANNA", "rows 2 and 3 give"),
         ("Zoë\nZoe\u{308}", "rows 2 and 3 give"),
         ("Straße\nSTRASSE", "rows 2 and 3 give"),
@@ -100,7 +100,7 @@ fn rows_without_a_good_name_are_refused_before_anything_is_written() {
     }
     assert!(set(b"name\nAnna\n", 2, &["{name} {team}", "-o", "OUT/{name}.svg"]).0.contains("no column team"));
     assert!(set(b"name\nJos\xe9\n", 3, &["{name}", "-o", "OUT/{name}.svg"]).0.contains("CSV UTF-8"));
-    assert!(set(b"name\na\nb\n", 3, &["{name}", "-o", "OUT/x.svg"]).0.contains("rows 2 and 3 give one file"));
+    assert!(set(b"name\na\nb\n", 3, &["{name}", "-o", "OUT/x.svg"]).0.contains("rows 2 and 3 give the same file"));
 }
 
 /// A row that fails does not affect the others, and no source is overwritten.

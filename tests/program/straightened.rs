@@ -449,7 +449,7 @@ fn what_is_wrong_with_a_picture_is_said() {
     assert_eq!(still("whole.webp", &[]), (0, String::new()));
     for (file, more, wanted, said) in [
         ("cut.webp", &[][..], 0, "EXIF data are damaged"),
-        ("torn.jpg", &[], 3, "torn.jpg: begins as no PNG, JPEG or WebP picture does"),
+        ("torn.jpg", &[], 3, "torn.jpg: does not begin as a PNG, JPEG or WebP picture"),
         ("whole.webp", &["--kerf", "1mm"], 2, "--kerf is for SVG files"),
         ("whole.webp", &["--fit", "none", "+", "affine", "--move-x", "999"], 0, "nothing of the picture"),
     ] {

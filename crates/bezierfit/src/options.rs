@@ -183,8 +183,10 @@ impl std::fmt::Display for Error {
         match self {
             Self::NotFinite(e) => e.fmt(f),
             Self::Tolerance(v) => write!(f, "the tolerance must be a number above zero, not {v}"),
-            Self::Corner(v) => write!(f, "the corner angle must be a number from zero on, not {v}"),
-            Self::Crossings => f.write_str("how the edges of the area cross was not found; another tolerance may help"),
+            Self::Corner(v) => write!(f, "the corner angle must be a number of at least zero, not {v}"),
+            Self::Crossings => {
+                f.write_str("the crossings of the area's edges could not be determined; try another tolerance")
+            }
             Self::NotMet { at, error } => write!(
                 f,
                 "the tolerance was not met, first near {},{}, where the curve may jump or swing too fast; what was found is {error} off",

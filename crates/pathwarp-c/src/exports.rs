@@ -223,7 +223,7 @@ pub unsafe extern "C" fn pathwarp_map_points(
     error: *mut *mut c_char,
 ) -> i32 {
     let map = || {
-        let too_large = || Failed::usage(format!("the count {count} is larger than memory"));
+        let too_large = || Failed::usage(format!("the count {count} is larger than memory can hold"));
         let numbers = count.checked_mul(2).ok_or_else(too_large)?;
         // The points are copied, since `from` may be `to`.
         // SAFETY: the header requires a warper and these numbers; both are done with before `to` is written.

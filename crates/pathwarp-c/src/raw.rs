@@ -105,7 +105,7 @@ fn check_array<T>(first: *const T, count: usize, name: &str) -> Result<(), Faile
         return Err(Failed::usage(format!("{name} is not aligned")));
     }
     if count.checked_mul(size_of::<T>()).is_none_or(|bytes| isize::try_from(bytes).is_err()) {
-        return Err(Failed::usage(format!("{name}: the count {count} is larger than memory")));
+        return Err(Failed::usage(format!("{name}: the count {count} is larger than memory can hold")));
     }
     Ok(())
 }

@@ -180,7 +180,7 @@ impl Table {
             let folded: String = shown.nfd().collect::<String>().to_uppercase().to_lowercase().nfc().collect();
             if let Some((first, other)) = known.get(&folded) {
                 faults.push(match *other == shown {
-                    true => format!("rows {first} and {number} give one file, {shown}"),
+                    true => format!("rows {first} and {number} give the same file, {shown}"),
                     false => format!(
                         "rows {first} and {number} give {other} and {shown}, which some systems take for one file"
                     ),
@@ -207,11 +207,11 @@ fn name_fault(row: &Row<'_>, pattern: &str) -> Option<String> {
     for column in columns(pattern) {
         let cell = row.filled(&format!("{{{column}}}"));
         if cell.is_empty() {
-            return Some(format!("column {column}: is empty, and names a file"));
+            return Some(format!("column {column} is empty, but has to name a file"));
         }
         if let Some(c) = cell.chars().find(|c| RESERVED.contains(*c) || c.is_control()) {
             let c = if c.is_control() { format!("U+{:04X}, a control character", u32::from(c)) } else { c.to_string() };
-            return Some(format!("column {column}: “{cell}” has {c}, which no name of a file may have"));
+            return Some(format!("column {column}: “{cell}” has {c}, which is not allowed in the name of a file"));
         }
     }
     let columns: Vec<&str> = columns(pattern).collect();
@@ -220,7 +220,7 @@ fn name_fault(row: &Row<'_>, pattern: &str) -> Option<String> {
     let port_number = PORTS.iter().find_map(|port| stem.strip_prefix(port)).unwrap_or_default();
     let is_port = port_number.chars().count() == 1 && port_number.contains(char::is_numeric);
     let problem = if name.ends_with(['.', ' ']) || name.starts_with(' ') {
-        "begins or ends in a way that file systems drop"
+        "begins with a space, or ends with a space or a dot, which file systems drop"
     } else if DEVICES.contains(&stem.as_str()) || is_port {
         "is the name of a device on Windows"
     } else if name.len() > LONGEST {

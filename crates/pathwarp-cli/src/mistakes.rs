@@ -59,7 +59,7 @@ pub(crate) fn single_dashed(words: &[OsString], known: impl FnOnce() -> Vec<Stri
         |n: &String| n.len() > 2 && n.chars().all(|c| c.is_ascii_lowercase() || c == '-') && !n.starts_with('-');
     let names: Vec<String> = words.iter().filter_map(name).filter(is_name).collect();
     let known = if names.is_empty() { Vec::new() } else { known() };
-    names.into_iter().find(|n| known.contains(n)).map(|n| format!("-{n} is no option; use --{n}"))
+    names.into_iter().find(|n| known.contains(n)).map(|n| format!("-{n} is not an option; use --{n}"))
 }
 
 /// Suggests a replacement for an unknown option: known ones that begin with it, a synonym, or a similar one.
@@ -162,7 +162,7 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
     let name = inputs[missing].display().to_string();
     let words: Vec<String> = words.iter().map(|w| w.to_string_lossy().into_owned()).collect();
     if let Some(Torn { whole, why, .. }) = torn(&words).filter(|t| inputs.iter().any(|i| *i == *t.word)) {
-        return Some(format!("{name} is no file; {why}: {whole}"));
+        return Some(format!("there is no file {name}; {why}: {whole}"));
     }
     if inputs.len() < 2 {
         return None;
@@ -177,7 +177,7 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
     }
     if ["to", "into", "as", "->", "=>"].contains(&name.as_str()) {
         let to = inputs.get(missing + 1).map_or("OUT.svg".into(), |to| to.display().to_string());
-        return Some(format!("{name} is no file; the result is named with -o {to}"));
+        return Some(format!("there is no file {name}; name the result with -o {to}"));
     }
     let is_last = missing + 1 == inputs.len();
     (is_last && !has_out && Format::of(&inputs[missing]).is_some())

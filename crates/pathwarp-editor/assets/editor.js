@@ -104,9 +104,7 @@
   var SVG = "http://www.w3.org/2000/svg";
   function fill(element, attributes, children) {
     for (const [name, value] of Object.entries(attributes)) {
-      if (value === void 0 || value === false) continue;
-      if (typeof value === "function") element.addEventListener(name.slice(2), value);
-      else element.setAttribute(name, value === true ? "" : String(value));
+      if (value !== void 0 && value !== false) element.setAttribute(name, value === true ? "" : String(value));
     }
     for (const child of children) if (child) element.append(child);
     return element;
@@ -117,11 +115,24 @@
   function s(tag, attributes = {}, ...children) {
     return fill(document.createElementNS(SVG, tag), attributes, children);
   }
+  function button(attributes, click, ...children) {
+    const element = h("button", { type: "button", ...attributes }, ...children);
+    element.addEventListener("click", click);
+    return element;
+  }
+  function onFile(field, take) {
+    field.addEventListener("change", () => {
+      const file = field.files?.[0];
+      field.value = "";
+      if (file) take(file);
+    });
+  }
   function byId(id) {
     const found = document.getElementById(id);
     if (!found) throw new Error(`the page has no #${id}`);
     return found;
   }
+  var ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
   function isTyping(target) {
     return target instanceof HTMLElement && target.matches("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
   }
@@ -163,7 +174,8 @@
   }
 
   // src/fields.ts
-  var LENGTHS = { px: 1, in: 96, mm: 96 / 25.4, cm: 96 / 2.54, m: 96 / 0.0254, pt: 96 / 72, pc: 16, q: 96 / 101.6 };
+  var MM = 96 / 25.4;
+  var LENGTHS = { px: 1, in: 96, mm: MM, cm: 96 / 2.54, m: 96 / 0.0254, pt: 96 / 72, pc: 16, q: 96 / 101.6 };
   var TOKEN2 = /\s*(?:(\d+[.,]?\d*|[.,]\d+)\s*(%|°|[a-z]+)?|([-+*/()]))\s*/iy;
   var EXACT = 12;
   function evaluate(text, unit) {
@@ -284,10 +296,10 @@
       this.wrongFor = problem === null ? null : this.read();
       this.message.textContent = problem;
       this.message.hidden = problem === null;
-      if (problem === null) this.input.removeAttribute("aria-invalid");
-      else this.input.setAttribute("aria-invalid", "true");
-      if (problem === null) this.input.removeAttribute("aria-describedby");
-      else this.input.setAttribute("aria-describedby", this.message.id);
+      for (const [name, value] of [["aria-invalid", "true"], ["aria-describedby", this.message.id]]) {
+        if (problem === null) this.input.removeAttribute(name);
+        else this.input.setAttribute(name, value);
+      }
     }
     /** Shows the valid value again. */
     reset() {
@@ -356,11 +368,11 @@
   function corners({ start, segments }, frame) {
     return [start, ...segments].map((p) => point([p[0], p[1]], frame)).join(" ");
   }
-  var SHARES = 1e6;
+  var LARGEST_SHARE = 1e6;
   var PER_CENT = 1e3;
   var DEGREE = 6e4;
   function adjustUnit(a) {
-    return a.most > SHARES ? ["deg", DEGREE] : ["%", PER_CENT];
+    return a.most > LARGEST_SHARE ? ["deg", DEGREE] : ["%", PER_CENT];
   }
   function adjustName(all, i) {
     return all.length === 1 ? "Shape" : `Shape ${i + 1}`;
@@ -415,21 +427,21 @@
   }
 
   // src/dials.ts
-  var DIAL = 0.3;
-  var FURTHER = 1.25;
-  function dials(place2) {
+  var FIRST_RADIUS = 0.3;
+  var NEXT_RADIUS = 1.25;
+  function dials(geometry) {
     const out = [];
-    let radius = DIAL * Math.max(place2.frame[2], place2.frame[3]);
-    for (const param of place2.deformation.params) {
-      const grip = place2.grips[param.name];
+    let radius = FIRST_RADIUS * Math.max(geometry.frame[2], geometry.frame[3]);
+    for (const param of geometry.deformation.params) {
+      const grip = geometry.grips[param.name];
       if (!grip) continue;
-      grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust, i, place2.frame)));
+      grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust, i, geometry.frame)));
       if (grip.value === void 0 || param.default === void 0) continue;
       if (param.kind === "angle" && !param.name.startsWith("skew")) {
-        out.push(turner(param, grip, place2, radius));
-        radius *= FURTHER;
-      } else if (param.kind === "length" && !place2.grips.about?.point) {
-        out.push(arm(param, grip, place2.frame));
+        out.push(angleDial(param, grip, geometry, radius));
+        radius *= NEXT_RADIUS;
+      } else if (param.kind === "length" && !geometry.grips.about?.point) {
+        out.push(lengthArm(param, grip, geometry.frame));
       }
     }
     return out;
@@ -440,7 +452,7 @@
       line: () => ({ kind: "arm", points: [from(), get()] })
     };
   }
-  function turner(param, grip, { grips, frame: [x, y, w, h2] }, radius) {
+  function angleDial(param, grip, { grips, frame: [x, y, w, h2] }, radius) {
     const centre = () => grips.about?.point ?? [x + w / 2, y + h2 / 2];
     const get = () => {
       const [cx, cy] = centre();
@@ -450,16 +462,16 @@
     const set2 = (to) => {
       const [cx, cy] = centre();
       const angle = Math.atan2(to[1] - cy, to[0] - cx) * 180 / Math.PI;
-      grip.value = within(angle + 360 * Math.round((grip.value - angle) / 360), param.least, param.most);
+      grip.value = clamp(angle + 360 * Math.round((grip.value - angle) / 360), param.least, param.most);
     };
     return dial(param, param.name, words(param.name), centre, get, set2);
   }
-  function arm(param, grip, [x, y, w, h2]) {
+  function lengthArm(param, grip, [x, y, w, h2]) {
     const isUp = param.axis === "y";
     const from = isUp ? [x + w / 2, y + h2 / 2] : [x, y + h2];
     const get = () => isUp ? [from[0], from[1] - grip.value] : [from[0] + grip.value, from[1]];
     const set2 = (to) => {
-      grip.value = within(isUp ? from[1] - to[1] : to[0] - from[0], param.least, param.most);
+      grip.value = clamp(isUp ? from[1] - to[1] : to[0] - from[0], param.least, param.most);
     };
     return dial(param, param.name, words(param.name), () => from, get, set2);
   }
@@ -470,21 +482,20 @@
     const get = () => isUp ? [x, y + h2 - share() * h2] : [x + share() * w, y + h2];
     const set2 = (to) => {
       const t = isUp ? (y + h2 - to[1]) / Math.max(h2, 1e-9) : (to[0] - x) / Math.max(w, 1e-9);
-      a.value = a.least + within(t, 0, 1) * (a.most - a.least);
+      a.value = a.least + clamp(t, 0, 1) * (a.most - a.least);
     };
     return dial(param, `${param.name}/${i}`, adjustName(all, i), () => [x, y + h2], get, set2);
   }
-  function within(value, least = -Infinity, most = Infinity) {
+  function clamp(value, least = -Infinity, most = Infinity) {
     return Math.min(Math.max(value, least), most);
   }
 
   // src/space.ts
-  var ROUND = 60;
+  var CIRCLE_SEGMENTS = 60;
   function inSpace({ deformation, grips, frame: [x, y, w, h2] }) {
     const out = [];
     const foot = [x + w / 2, y + h2];
-    const wide = () => grips["picture-width"]?.value ?? w;
-    const tall = () => wide() / w * h2;
+    const tall = () => (grips["picture-width"]?.value ?? w) / w * h2;
     const middle2 = () => [foot[0], foot[1] - tall() / 2];
     const size = (name, get, value, from) => {
       const [param, grip] = [deformation.params.find((p) => p.name === name), grips[name]];
@@ -500,18 +511,21 @@
   }
   function surface(param, shape, middle2, tall) {
     const isLevel = /,\s*level\b/.test(shape.text);
-    return shape.sizes.filter(([name]) => /(radius|diameter)$/.test(name)).map((own) => {
-      const k = own[0].endsWith("diameter") ? 2 : 1;
-      const up = own[0].startsWith("top") ? -0.5 : own[0].startsWith("bottom") ? 0.5 : 0;
-      const centre = () => [middle2()[0], middle2()[1] + up * tall()];
-      const get = () => isLevel ? [centre()[0], centre()[1] + own[1] / k] : [centre()[0] + own[1] / k, centre()[1]];
+    return shape.sizes.filter(([name]) => /(radius|diameter)$/.test(name)).map((size) => {
+      const [name] = size;
+      const radii = name.endsWith("diameter") ? 2 : 1;
+      const radius = () => size[1] / radii;
+      const down = name.startsWith("top") ? -0.5 : name.startsWith("bottom") ? 0.5 : 0;
+      const centre = () => [middle2()[0], middle2()[1] + down * tall()];
+      const get = () => isLevel ? [centre()[0], centre()[1] + radius()] : [centre()[0] + radius(), centre()[1]];
       const set2 = (to) => {
-        own[1] = k * Math.max(Math.abs(isLevel ? to[1] - centre()[1] : to[0] - centre()[0]), 1e-3 * tall());
-        shape.text = shape.text.replace(new RegExp(`(^|[:,])(\\s*${own[0]}\\s*=)[^,]*`), `$1$2${short(own[1])}`);
+        size[1] = radii * Math.max(Math.abs(isLevel ? to[1] - centre()[1] : to[0] - centre()[0]), 1e-3 * tall());
+        shape.text = shape.text.replace(new RegExp(`(^|[:,])(\\s*${name}\\s*=)[^,]*`), `$1$2${short(size[1])}`);
       };
-      const made = dial(param, `${param.name}/${own[0]}`, `${words(param.name)}, ${own[0].replace("-", " ")}`, centre, get, set2);
+      const made = dial(param, `${param.name}/${name}`, `${words(param.name)}, ${name.replace("-", " ")}`, centre, get, set2);
       const isRound = shape.text.startsWith("sphere") || param.name === "mirror";
-      const round = () => Array.from({ length: ROUND + 1 }, (_, i) => [centre()[0] + own[1] / k * Math.cos(2 * Math.PI * i / ROUND), centre()[1] + own[1] / k * Math.sin(2 * Math.PI * i / ROUND)]);
+      const direction = (i) => 2 * Math.PI * i / CIRCLE_SEGMENTS;
+      const round = () => Array.from({ length: CIRCLE_SEGMENTS + 1 }, (_, i) => [centre()[0] + radius() * Math.cos(direction(i)), centre()[1] + radius() * Math.sin(direction(i))]);
       const across = () => [[2 * centre()[0] - get()[0], 2 * centre()[1] - get()[1]], get()];
       return { ...made, line: () => ({ kind: "arm", points: isRound ? round() : across() }) };
     });
@@ -546,21 +560,21 @@
   }
   function nearest(sub, to) {
     let best = null;
-    const look = (k, points2, t) => {
+    const tryParameter = (k, points2, t) => {
       const [at] = scheme(points2, t).pop();
       const distance2 = Math.hypot(at[0] - to[0], at[1] - to[1]);
       if (!best || distance2 < best.distance) best = { piece: k, t, at, distance: distance2 };
     };
     sub.segments.forEach((_, k) => {
       const points2 = piece(sub, k);
-      for (let i = 1; i < SAMPLES; i++) look(k, points2, i / SAMPLES);
+      for (let i = 1; i < SAMPLES; i++) tryParameter(k, points2, i / SAMPLES);
     });
     const found = best;
     if (!found) return null;
     const points = piece(sub, found.piece);
     for (let step2 = 0.5 / SAMPLES; step2 > FINE; step2 /= 2) {
       const { t } = best;
-      for (const near of [t - step2, t + step2]) look(found.piece, points, Math.min(Math.max(near, FINE), 1 - FINE));
+      for (const near of [t - step2, t + step2]) tryParameter(found.piece, points, Math.min(Math.max(near, FINE), 1 - FINE));
     }
     return best;
   }
@@ -572,7 +586,6 @@
     const first = rows.slice(1).map((row) => row[0]);
     const second = rows.slice(0, -1).map((row) => row[row.length - 1]).reverse();
     sub.segments.splice(k, 1, first.flat(), second.flat());
-    return k + 1;
   }
   function drop(sub, node2) {
     const { segments } = sub;
@@ -601,10 +614,10 @@
 
   // src/handles.ts
   var FARTHEST_BEND = 1.9;
-  var MARGIN = 0.15;
+  var END_MARGIN = 0.15;
   var PAIR = "X,Y:X,Y";
   var FEWEST_CLOSED = 3;
-  var ROUND2 = 90;
+  var CIRCLE_SEGMENTS2 = 90;
   var SKELETONS = /* @__PURE__ */ new Set(["along"]);
   var Handles = class {
     constructor(deformation, step2, grips) {
@@ -617,31 +630,31 @@
     }
     deformation;
     step;
+    frame;
     handles = [];
     grips;
     /** Handles of numbers. */
     dials = [];
     /** A path of the drawing that a parameter referred to before its line was dragged. */
     released = null;
-    /** Control points of nets that have been moved. */
+    /** Indices of the control points of nets that have been moved, by parameter. */
     moved = {};
-    frame;
     collect() {
       this.handles = [];
       for (const { name } of this.deformation.params) {
         const grip = this.grips[name];
         if (!grip) continue;
         if (grip.point && !(name === "eye" && this.step.args["eye-height"])) this.addPoint(name, grip);
-        grip.points?.forEach((_, i) => this.addOneOf(name, grip.points, i));
+        grip.points?.forEach((_, i) => this.addListPoint(name, grip.points, i));
         grip.pairs?.forEach((_, i) => this.addPair(name, grip.pairs, i));
         grip.net?.points.forEach((_, i) => this.addNode(name, grip.net, i));
         if (name === this.deformation.gallery?.bend && grip.value !== void 0) this.addBend(name, grip);
         if (name === "radius" && grip.value !== void 0 && this.grips.center?.point) this.addRadius(name, grip);
         if (grip.circle) this.addCircle(name, grip);
-        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
+        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? closed(sub) : sub, `${i}.${j}`)));
       }
-      const place2 = { deformation: this.deformation, grips: this.grips, frame: this.frame };
-      this.dials = this.handles.every(({ param }) => param === "about") ? dials(place2) : this.grips.eye || this.grips["eye-height"] ? inSpace(place2) : [];
+      const isAnamorphosis = this.grips.eye || this.grips["eye-height"];
+      this.dials = this.handles.every(({ param }) => param === "about") ? dials(this) : isAnamorphosis ? inSpace(this) : [];
       this.handles.push(...this.dials.map(({ handle }) => handle));
     }
     /** The net whose control points are handles. */
@@ -649,29 +662,29 @@
       return Object.values(this.grips).find((grip) => grip.net)?.net;
     }
     /** `true` if points are added as pins, at the artwork's points under the pointer. */
-    get pairs() {
+    get addsPins() {
       return this.grows && this.deformation.params.some(({ name, notation }) => notation === PAIR && this.grips[name]?.pairs);
     }
     /** Returns the handle of the point that is nearest to `at`. */
     nearest(at) {
-      const far = (h2) => Math.hypot(h2.get()[0] - at[0], h2.get()[1] - at[1]);
-      return this.handles.filter(({ shape }) => shape === "node").reduce((best, h2) => best && far(best) <= far(h2) ? best : h2, null);
+      const distance2 = (h2) => Math.hypot(h2.get()[0] - at[0], h2.get()[1] - at[1]);
+      return this.handles.filter(({ shape }) => shape === "node").reduce((best, h2) => best && distance2(best) <= distance2(h2) ? best : h2, null);
     }
     /** Returns `true` if points are added to all rows, or removed from all, at once. */
     isRows(param) {
-      return this.points(param) === "rows";
+      return this.pointsOf(param) === "rows";
     }
     /** Returns `true` if a point added at `at` adds no others. */
     isFree(at, reach) {
-      const found = this.near(at, reach, (param) => param.points !== void 0);
-      return !found || this.points(found.name) === "any";
+      const hit = this.pathNear(at, reach, (param) => param.points !== void 0);
+      return !hit || this.pointsOf(hit.name) === "any";
     }
     /** Returns values for which the net has another row or column through a point on one of its lines. */
     denser(at, reach) {
       const { net } = this;
       const sides = net?.lines.flatMap((line) => line.slice(1).map((b2, i) => [line[i], b2])) ?? [];
-      const far = ([a2, b2]) => distance(at, net.points[a2], net.points[b2]);
-      const side = sides.filter((s2) => far(s2) <= reach).sort((s2, t) => far(s2) - far(t))[0];
+      const distanceTo = ([a2, b2]) => distance(at, net.points[a2], net.points[b2]);
+      const side = sides.filter((s2) => distanceTo(s2) <= reach).sort((s2, t) => distanceTo(s2) - distanceTo(t))[0];
       if (!net || !side) return null;
       const [a, b] = side.map((i) => net.names[i].split(",").map(Number));
       if (a.length === 3) return { degree: [String(a.reduce((sum, n) => sum + n) + 1)] };
@@ -686,12 +699,9 @@
       counts[axis] = name === "cells" ? 2 * counts[axis] : counts[axis] + 1;
       return { [name]: [counts.join("x")] };
     }
-    points(name) {
+    /** Returns the rule for the number of a path's points. */
+    pointsOf(name) {
       return this.deformation.params.find((p) => p.name === name)?.points;
-    }
-    /** Returns `true` if the path may have any number of points. */
-    isAny(name) {
-      return this.points(name) === "any";
     }
     /** The rows of points, all of equal length. */
     get rows() {
@@ -736,11 +746,11 @@
         set: (to) => void (grip.value = Math.hypot(to[0] - centre()[0], to[1] - centre()[1]))
       });
     }
-    /** Adds the handles for a circle or arc: the centre moves it, a handle opposite to its start changes the radius, its ends rotate. */
+    /** Adds the handles for a circle or arc: the centre moves it, a handle halfway between its ends changes the radius, its ends rotate. */
     addCircle(param, grip) {
       const c = grip.circle;
       const name = words(param);
-      const at = (degrees) => [c[0] + c[2] * Math.cos(degrees * Math.PI / 180), c[1] + c[2] * Math.sin(degrees * Math.PI / 180)];
+      const at = (degrees) => onCircle(c, degrees);
       const handle = (key, shape, label, get, set2) => this.handles.push({ key: `${param}/${key}`, param, shape, label: `${name}, ${label}`, group: param, get, set: set2 });
       handle("centre", "node", "centre", () => [c[0], c[1]], (to) => void ([c[0], c[1]] = to));
       handle("radius", "control", "radius", () => at((c[3] + c[4]) / 2), (to) => void (c[2] = Math.max(Math.hypot(to[0] - c[0], to[1] - c[1]), 1e-6)));
@@ -753,7 +763,7 @@
       });
       if (!isWhole) handle("end", "node", "end", () => at(c[4]), (to) => void (c[4] += turn(c[4], to)));
     }
-    addOneOf(param, points, i) {
+    addListPoint(param, points, i) {
       this.handles.push({
         key: `${param}/${i}`,
         param,
@@ -805,9 +815,9 @@
     addSubpath(param, path, sub, id) {
       const { segments } = sub;
       const last = segments.length - 1;
-      const joined = last >= 0 && (sub.closed || path.length === 1) && same(end(segments[last]), sub.start);
-      const nodes = joined ? segments.length : segments.length + 1;
-      const before2 = (n) => n > 0 ? segments[n - 1] : joined ? segments[last] : void 0;
+      const isLoop = last >= 0 && (sub.closed || path.length === 1) && coincide(end(segments[last]), sub.start);
+      const nodes = isLoop ? segments.length : segments.length + 1;
+      const before2 = (n) => n > 0 ? segments[n - 1] : isLoop ? segments[last] : void 0;
       const after = (n) => segments[n];
       const at = (n) => n === 0 ? sub.start : end(segments[n - 1]);
       const isCorner = (n) => {
@@ -825,24 +835,24 @@
           shape: "node",
           label,
           group: `${param}/${id}`,
-          remove: this.removal(param, sub, n, nodes),
+          remove: this.remover(param, sub, n, nodes),
           get: () => at(n),
           set: (to) => {
             const from = at(n);
-            const arrive = before2(n);
-            const ends = [[arrive, 2, n > 0 ? n - 1 : nodes - 1], [after(n), 0, (n + 1) % nodes]];
-            const turns = isCorner(n);
-            const isFollowed = ends.map(([, , other]) => turns && isCorner(other));
-            ends.forEach(([seg, own, other], i) => {
+            const incoming = before2(n);
+            const adjacent = [[incoming, 2, n > 0 ? n - 1 : nodes - 1], [after(n), 0, (n + 1) % nodes]];
+            const isCornerHere = isCorner(n);
+            const isWhole = adjacent.map(([, , other]) => isCornerHere && isCorner(other));
+            adjacent.forEach(([seg, near, other], i) => {
               if (seg?.length !== 6) return;
-              const moved2 = similarity(turns ? at(other) : null, from, to);
-              for (const k of isFollowed[i] ? [own, 2 - own] : [own]) seg.splice(k, 2, ...moved2([seg[k], seg[k + 1]]));
+              const image = similarity(isCornerHere ? at(other) : null, from, to);
+              for (const k of isWhole[i] ? [near, 2 - near] : [near]) seg.splice(k, 2, ...image([seg[k], seg[k + 1]]));
             });
             if (n === 0) sub.start = to;
-            if (n > 0 || joined) arrive.splice(arrive.length - 2, 2, ...to);
+            if (n > 0 || isLoop) incoming.splice(incoming.length - 2, 2, ...to);
           }
         });
-        const arm2 = (side) => {
+        const arm = (side) => {
           const seg = side === "in" ? before2(n) : after(n);
           if (seg?.length !== 6) return;
           const k = side === "in" ? 2 : 0;
@@ -856,20 +866,19 @@
             set: (to, smooth) => {
               const other = side === "in" ? after(n) : before2(n);
               const m = side === "in" ? 0 : 2;
-              const turns = smooth && other?.length === 6 && isSmooth(at(n), [seg[k], seg[k + 1]], [other[m], other[m + 1]]);
-              seg[k] = to[0];
-              seg[k + 1] = to[1];
-              if (turns) align(other, m, at(n), to);
+              const staysSmooth = smooth && other?.length === 6 && isSmooth(at(n), [seg[k], seg[k + 1]], [other[m], other[m + 1]]);
+              seg.splice(k, 2, ...to);
+              if (staysSmooth) align(other, m, at(n), to);
             }
           });
         };
-        arm2("in");
-        arm2("out");
+        arm("in");
+        arm("out");
       }
     }
     /** Returns a function that removes a node of a path, if enough remain. */
-    removal(param, sub, n, nodes) {
-      if (this.points(param) === "rows" && nodes > 2 && n > 0 && n < nodes - 1) {
+    remover(param, sub, n, nodes) {
+      if (this.isRows(param) && nodes > 2 && n > 0 && n < nodes - 1) {
         return () => {
           for (const [name, row] of this.rows) {
             drop(row, n);
@@ -878,16 +887,16 @@
           this.collect();
         };
       }
-      if (!this.isAny(param) || nodes <= (sub.closed ? FEWEST_CLOSED : 2)) return void 0;
+      if (this.pointsOf(param) !== "any" || nodes <= (sub.closed ? FEWEST_CLOSED : 2)) return void 0;
       return () => {
         drop(sub, n);
         this.collect();
       };
     }
-    /** Returns the nearest path of parameters for which `is` holds. */
-    near(at, reach, is) {
+    /** Returns the nearest point within reach on a path of the parameters that `accepts` chooses. */
+    pathNear(at, reach, accepts) {
       let best = null;
-      for (const param of this.deformation.params.filter(is)) {
+      for (const param of this.deformation.params.filter(accepts)) {
         this.grips[param.name]?.paths?.forEach((path, i) => path.forEach((sub, j) => {
           const spot = nearest(sub, at);
           if (spot && spot.distance <= Math.min(reach, best?.spot.distance ?? reach)) best = { name: param.name, id: `${i}.${j}`, sub, spot };
@@ -897,18 +906,18 @@
     }
     /** Starts to drag the line near a point: a curve bends with the pointer, a straight line moves. */
     pull(at, reach) {
-      const found = this.near(at, reach, () => true);
-      if (!found) return this.pullRow(at, reach) ?? this.pullCircle(at, reach);
-      const { name, id, sub, spot } = found;
+      const hit = this.pathNear(at, reach, () => true);
+      if (!hit) return this.pullRow(at, reach) ?? this.pullCircle(at, reach);
+      const { name, id, sub, spot } = hit;
       const handle = (n, side = "") => this.handles.find((h2) => h2.key === `${name}/${id}/${n}${side}`);
       const next = handle(spot.piece + 1) ? spot.piece + 1 : 0;
       const isCurve = sub.segments[spot.piece].length === 6;
       const ends = isCurve ? [handle(spot.piece, "/out"), handle(next, "/in")] : [handle(spot.piece), handle(next)];
       const [first, second] = ends;
       if (!first || !second) return null;
-      const t = Math.min(Math.max(spot.t, MARGIN), 1 - MARGIN);
-      const whole = isCurve ? 3 * t * (1 - t) * ((1 - t) ** 2 + t ** 2) : 1;
-      const shares = isCurve ? [(1 - t) / whole, t / whole] : [1, 1];
+      const t = Math.min(Math.max(spot.t, END_MARGIN), 1 - END_MARGIN);
+      const weight = isCurve ? 3 * t * (1 - t) * ((1 - t) ** 2 + t ** 2) : 1;
+      const shares = isCurve ? [(1 - t) / weight, t / weight] : [1, 1];
       const from = [[...first.get()], [...second.get()]];
       return {
         param: name,
@@ -928,19 +937,19 @@
       const [param, grip] = Object.entries(this.grips).find(([, g]) => g.net) ?? [];
       const net = grip?.net;
       if (!net || !param) return null;
-      const far = (line) => Math.min(...line.slice(1).map((b, i) => distance(at, net.points[line[i]], net.points[b])));
-      const row = net.lines.filter((line) => line.length > 1).sort((a, b) => far(a) - far(b))[0];
-      if (!row || far(row) > reach) return null;
+      const distanceTo = (line) => Math.min(...line.slice(1).map((b, i) => distance(at, net.points[line[i]], net.points[b])));
+      const row = net.lines.filter((line) => line.length > 1).sort((a, b) => distanceTo(a) - distanceTo(b))[0];
+      if (!row || distanceTo(row) > reach) return null;
       const handles = row.map((i) => this.handles.find(({ key }) => key === `${param}/${i}`));
       const from = handles.map((h2) => [...h2.get()]);
       return { param, handles, ends: handles.map(({ key }) => key), targets: (to) => from.map(([x, y]) => [x + to[0] - at[0], y + to[1] - at[1]]) };
     }
     /** Adds a point to the path near `at`. */
     divide(at, reach) {
-      const found = this.near(at, reach, (param) => param.points !== void 0);
-      if (!found) return false;
-      const { name, sub, spot } = found;
-      if (this.points(name) === "any") {
+      const hit = this.pathNear(at, reach, (param) => param.points !== void 0);
+      if (!hit) return false;
+      const { name, sub, spot } = hit;
+      if (this.pointsOf(name) === "any") {
         split(sub, spot);
         this.collect();
         this.write(name);
@@ -971,12 +980,9 @@
           for (const line of grip.net.lines) out.push({ kind: "net", points: line.map((i) => points[i]) });
         }
         if (grip.circle) {
-          const [cx, cy, r, from, to] = grip.circle;
-          const at = (i) => {
-            const a = (from + (to - from) * i / ROUND2) * Math.PI / 180;
-            return [cx + r * Math.cos(a), cy + r * Math.sin(a)];
-          };
-          out.push({ kind: "path", points: Array.from({ length: ROUND2 + 1 }, (_, i) => at(i)) }, { kind: "arm", points: [[cx, cy], at(0)] });
+          const [cx, cy, , from, to] = grip.circle;
+          const points = Array.from({ length: CIRCLE_SEGMENTS2 + 1 }, (_, i) => onCircle(grip.circle, from + (to - from) * i / CIRCLE_SEGMENTS2));
+          out.push({ kind: "path", points }, { kind: "arm", points: [[cx, cy], points[0]] });
         }
         for (const path of grip.paths ?? []) path.forEach((sub) => this.subpathLines(sub, out));
       }
@@ -986,12 +992,11 @@
       let at = sub.start;
       const pieces = [at];
       for (const seg of sub.segments) {
-        const points = [];
-        for (let i = 0; i + 1 < seg.length; i += 2) points.push([seg[i], seg[i + 1]]);
-        const to = points[points.length - 1];
-        if (points.length === 3) {
-          out.push({ kind: "arm", points: [at, points[0]] }, { kind: "arm", points: [points[1], to] });
-          pieces.push(...points);
+        const to = end(seg);
+        if (seg.length === 6) {
+          const [first, second] = [[seg[0], seg[1]], [seg[2], seg[3]]];
+          out.push({ kind: "arm", points: [at, first] }, { kind: "arm", points: [second, to] });
+          pieces.push(first, second, to);
         } else {
           pieces.push(at, to, to);
         }
@@ -1019,8 +1024,8 @@
     /** Writes a value for each moved control point of a net; it replaces earlier values and shifts. */
     writeNet(name, net) {
       for (const i of this.moved[name] ?? []) {
-        const index = `${net.names[i]}:`;
-        const without = (key) => (this.step.args[key] ?? []).flatMap((v) => v.split(/\s+/)).filter((v) => v && !v.startsWith(index));
+        const prefix = `${net.names[i]}:`;
+        const without = (key) => (this.step.args[key] ?? []).flatMap((v) => v.split(/\s+/)).filter((v) => v && !v.startsWith(prefix));
         if (this.step.args.move) this.step.args.move = without("move");
         this.step.args[name] = [...without(name), node(net.names[i], net.points[i], this.frame)];
       }
@@ -1030,7 +1035,7 @@
       const [param, id = "", n] = handle.key.split("/");
       const [i, j] = id.split(".").map(Number);
       const sub = this.grips[param]?.paths?.[i]?.[j];
-      if (!sub || this.points(handle.param) === void 0) return null;
+      if (!sub || this.pointsOf(handle.param) === void 0) return null;
       return middle(sub, Math.min(Number(n), sub.segments.length - 1));
     }
     /** Adds a point where the step takes any number of them, to paths within `reach`; a pin moves `from` to it. */
@@ -1066,15 +1071,18 @@
       return this.deformation.params.some(({ name, points }) => points && this.grips[name]?.paths);
     }
     /** Returns the handle at the mirror image about the frame's middle, if one is there. */
-    partner(of) {
+    partner(handle) {
       const [x, , w, h2] = this.frame;
-      const [px, py] = of.get();
+      const [px, py] = handle.get();
       const mirrored = [2 * x + w - px, py];
-      const near = 1e-3 * Math.hypot(w, h2);
-      const candidates = this.handles.filter((o) => o !== of && o.shape === of.shape && o.param === of.param);
-      return candidates.find((o) => Math.hypot(o.get()[0] - mirrored[0], o.get()[1] - mirrored[1]) < near) ?? null;
+      const tolerance = 1e-3 * Math.hypot(w, h2);
+      const others = this.handles.filter((o) => o !== handle && o.shape === handle.shape && o.param === handle.param);
+      return others.find((o) => Math.hypot(o.get()[0] - mirrored[0], o.get()[1] - mirrored[1]) < tolerance) ?? null;
     }
   };
+  function onCircle([cx, cy, r], degrees) {
+    return [cx + r * Math.cos(degrees * Math.PI / 180), cy + r * Math.sin(degrees * Math.PI / 180)];
+  }
   function circle([x, y], r) {
     const k = 0.5522848 * r;
     const points = [
@@ -1100,35 +1108,33 @@
     return Math.hypot(a[0] + t * dx - p[0], a[1] + t * dy - p[1]);
   }
   function similarity(about, from, to) {
-    if (!about || same(about, from)) return ([x, y]) => [x + to[0] - from[0], y + to[1] - from[1]];
+    if (!about || coincide(about, from)) return ([x, y]) => [x + to[0] - from[0], y + to[1] - from[1]];
     const [ax, ay, bx, by] = [from[0] - about[0], from[1] - about[1], to[0] - about[0], to[1] - about[1]];
     const square = ax * ax + ay * ay;
     const [re, im] = [(ax * bx + ay * by) / square, (ax * by - ay * bx) / square];
     return ([x, y]) => [about[0] + re * (x - about[0]) - im * (y - about[1]), about[1] + im * (x - about[0]) + re * (y - about[1])];
   }
-  function same(a, b) {
+  function coincide(a, b) {
     return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9 * (1 + Math.hypot(...a));
   }
-  var OPPOSITE = -0.9995;
+  var OPPOSITE_COSINE = -0.9995;
   function isSmooth(node2, a, b) {
     const [ax, ay, bx, by] = [a[0] - node2[0], a[1] - node2[1], b[0] - node2[0], b[1] - node2[1]];
-    return ax * bx + ay * by < OPPOSITE * Math.hypot(ax, ay) * Math.hypot(bx, by);
+    return ax * bx + ay * by < OPPOSITE_COSINE * Math.hypot(ax, ay) * Math.hypot(bx, by);
   }
   function align(segment, k, node2, to) {
     const [dx, dy] = [node2[0] - to[0], node2[1] - to[1]];
     const length2 = Math.hypot(dx, dy);
-    const own = Math.hypot(segment[k] - node2[0], segment[k + 1] - node2[1]);
-    if (length2 === 0 || own === 0) return;
-    segment[k] = node2[0] + own * dx / length2;
-    segment[k + 1] = node2[1] + own * dy / length2;
+    const radius = Math.hypot(segment[k] - node2[0], segment[k + 1] - node2[1]);
+    if (length2 > 0 && radius > 0) segment.splice(k, 2, node2[0] + radius * dx / length2, node2[1] + radius * dy / length2);
   }
 
   // src/app.ts
-  var DRAFT = 0.35;
-  var DRAFTED = "pathwarp-drafted";
-  var KEYS = 500;
-  var SEEN = 0.05;
-  var NET = /* @__PURE__ */ new Set(["degree", "cells", "spline"]);
+  var DRAFT_TOLERANCE = 0.35;
+  var DRAFT_EVENT = "pathwarp-drafted";
+  var KEY_PAUSE = 500;
+  var VISIBLE_MM = 0.05;
+  var NET_PARAMS = /* @__PURE__ */ new Set(["degree", "cells", "spline"]);
   var App = class {
     catalogue = [];
     state = null;
@@ -1143,6 +1149,7 @@
     appends = false;
     /** Selectors of the parts that no step bends. */
     locks = [];
+    /** The geometry of each step's parameters, from which handles are made. */
     grips = [];
     /** The indices of steps for parts that the drawing lacks. */
     gone = [];
@@ -1163,9 +1170,11 @@
     }, pixel: 1, reveal: () => {
     } };
     listeners = [];
-    isBusy = false;
-    isWanted = false;
-    since = 0;
+    /** `true` while a draft is being made, and if another one is to follow. */
+    isDrafting = false;
+    isDraftWanted = false;
+    /** The time of the event that the next draft shows, in ms. */
+    draftedEventTime = 0;
     /** The queue of changes to the steps. */
     turns = Promise.resolve();
     /** The last commit; the server answers commits in order. */
@@ -1173,28 +1182,29 @@
     /** The number of commits that the server has refused. */
     refusals = 0;
     /** The timer that commits the steps after keys have moved a handle; 0 if none runs. */
-    pause = 0;
+    commitTimer = 0;
     connection;
     constructor() {
       this.connection = new Connection(
         () => void this.begin(),
         () => {
           this.isConnected = false;
-          this.endPause();
+          this.stopCommitTimer();
           this.tell("link");
         },
-        (news) => void this.hear(news)
+        (news) => void this.takeNews(news)
       );
     }
     /** `true` if changes are stored. */
     get isLive() {
       return this.isConnected && !this.isDone;
     }
-    listen(listener) {
-      this.listeners.push(listener);
+    /** Calls a listener after these changes. */
+    listen(changes, listener) {
+      this.listeners.push({ changes, listener });
     }
     tell(change) {
-      for (const listener of this.listeners) listener(change);
+      for (const { changes, listener } of this.listeners) if (changes.includes(change)) listener();
     }
     get step() {
       return this.steps[this.selected];
@@ -1266,16 +1276,16 @@
         return step2 ? { ...step2, exclude: this.locks } : null;
       });
     }
-    /** The selectors of the edited step; empty for the whole drawing. */
-    get chosen() {
+    /** The selectors of the edited step's parts; empty for the whole drawing. */
+    get selectors() {
       return this.step?.select ?? [];
     }
     /** Applies the edited step only to these parts, with its paths mapped onto their box. */
     scope(select) {
       return this.inTurn(async () => {
         const { step: step2, selected } = this;
-        if (!step2 || this.isFirst(step2) || select.length === 0 && this.chosen.length === 0) return;
-        const answer = await this.attempt(() => this.connection.ask({ do: "scope", steps: this.visible, select }));
+        if (!step2 || this.isFirst(step2) || select.length === 0 && this.selectors.length === 0) return;
+        const answer = await this.request({ do: "scope", steps: this.visible, select });
         if (!answer?.step) return;
         this.steps = this.steps.map((s2, i) => i === selected ? answer.step : s2);
         this.tell("steps");
@@ -1297,38 +1307,33 @@
       return shown3 ?? !this.isConnected;
     }
     /** Shows a draft of the present steps. While one is being made, only the newest request is kept. */
-    draft(since) {
-      this.since = since;
-      if (this.isBusy) {
-        this.isWanted = true;
-        return;
-      }
-      this.isBusy = true;
-      void this.drafts();
-    }
-    async drafts() {
+    async draft(eventTime) {
+      this.draftedEventTime = eventTime;
+      this.isDraftWanted = true;
+      if (this.isDrafting) return;
+      this.isDrafting = true;
       do {
-        this.isWanted = false;
-        const start = this.since;
+        this.isDraftWanted = false;
+        const start = this.draftedEventTime;
         await this.attempt(async () => {
           const asked2 = performance.now();
-          const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
+          const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT_TOLERANCE * this.screen.pixel });
           const answered = performance.now();
           this.take(answer);
           const detail = { start, asked: asked2, answered, shown: performance.now(), size: this.connection.size };
-          window.dispatchEvent(new CustomEvent(DRAFTED, { detail }));
+          window.dispatchEvent(new CustomEvent(DRAFT_EVENT, { detail }));
         });
-      } while (this.isWanted);
-      this.isBusy = false;
+      } while (this.isDraftWanted);
+      this.isDrafting = false;
     }
     /** Stores the present steps, with a state to undo. */
     commit() {
-      this.lastCommit = this.committed();
+      this.lastCommit = this.sendCommit();
       return this.lastCommit;
     }
-    async committed() {
-      this.isWanted = false;
-      this.endPause();
+    async sendCommit() {
+      this.isDraftWanted = false;
+      this.stopCommitTimer();
       const done = await this.attempt(async () => {
         const answer = await this.connection.ask({ do: "commit", steps: this.steps, shown: this.selected + 1 });
         this.isProposal = false;
@@ -1345,12 +1350,12 @@
     /** Commits if no other key follows for a while. */
     commitSoon() {
       this.isDragging = true;
-      clearTimeout(this.pause);
-      this.pause = window.setTimeout(() => void this.flush(), KEYS);
+      clearTimeout(this.commitTimer);
+      this.commitTimer = window.setTimeout(() => void this.flush(), KEY_PAUSE);
     }
     /** Commits changes made by keys so far, if any. */
     async flush() {
-      if (this.endPause()) await this.commit();
+      if (this.stopCommitTimer()) await this.commit();
     }
     /** Waits until the server has stored all changes. Returns `false` if it refuses some. */
     async settle() {
@@ -1368,10 +1373,11 @@
       field.blur();
       field.focus({ preventScroll: true });
     }
-    endPause() {
-      if (this.pause === 0) return false;
-      clearTimeout(this.pause);
-      this.pause = 0;
+    /** Returns `true` if a timer ran. */
+    stopCommitTimer() {
+      if (this.commitTimer === 0) return false;
+      clearTimeout(this.commitTimer);
+      this.commitTimer = 0;
       this.isDragging = false;
       return true;
     }
@@ -1379,7 +1385,7 @@
     cancel(step2, before2) {
       this.hold = null;
       this.isDragging = false;
-      this.isWanted = false;
+      this.isDraftWanted = false;
       this.steps = this.steps.map((s2) => s2 === step2 ? before2 : s2);
       void this.refresh();
       this.tell("values");
@@ -1395,15 +1401,14 @@
     async turn(direction) {
       if (this.hold) return direction === "undo" ? this.hold() : void 0;
       this.takeTyped();
-      return this.inTurn(() => this.turned(direction));
-    }
-    async turned(direction) {
-      if (!this.state?.[direction]) return;
-      await this.attempt(async () => {
-        const answer = await this.connection.ask({ do: direction, shown: null });
-        this.screen.show(answer);
-        await this.load(answer.state);
-        this.screen.reveal();
+      return this.inTurn(async () => {
+        if (!this.state?.[direction]) return;
+        await this.attempt(async () => {
+          const answer = await this.connection.ask({ do: direction, shown: null });
+          this.screen.show(answer);
+          await this.load(answer.state);
+          this.screen.reveal();
+        });
       });
     }
     /** Starts or ends the choice of a shape for another step. */
@@ -1413,45 +1418,39 @@
     }
     /** Replaces the edited step, or appends one if requested. */
     choose(deformation, args, variant = null) {
-      const { appends } = this;
+      let { appends } = this;
       this.appends = false;
-      return this.inTurn(() => this.replaced(deformation, args, appends, variant));
+      return this.inTurn(async () => {
+        if (this.deformation(deformation)?.first) return this.insertEdit(deformation);
+        appends ||= this.isFirst(this.step);
+        const at = appends ? this.steps.length : this.selected;
+        const step2 = await this.opening(deformation, this.steps.slice(0, at), variant, this.selectors);
+        if (!step2) return;
+        Object.assign(step2.args, args);
+        await this.commitNew(this.steps.toSpliced(at, 1, step2), at);
+      });
     }
-    async replaced(deformation, args, appends, variant) {
-      if (this.deformation(deformation)?.first) return this.prepared(deformation);
-      appends ||= this.isFirst(this.step);
-      const at = appends ? this.steps.length : this.selected;
-      const before2 = this.steps.slice(0, at);
-      const step2 = await this.opening(deformation, before2, variant, this.chosen);
-      if (!step2) return;
-      Object.assign(step2.args, args);
-      this.steps = appends ? [...this.steps, step2] : this.steps.map((s2, i) => i === at ? step2 : s2);
-      if (this.steps.length === 0) this.steps = [step2];
-      this.selected = Math.min(at, this.steps.length - 1);
+    /** Stores steps with a new one, and shows all of it, since it may need more room. */
+    async commitNew(steps, selected) {
+      this.steps = steps;
+      this.selected = Math.min(selected, steps.length - 1);
       this.tell("steps");
       this.dropHandles();
-      await this.proposed();
-    }
-    async proposed() {
       await this.commit();
       this.isWorkedOn = false;
       this.tell("steps");
       this.screen.reveal();
     }
     /** Inserts an edit before all deformations, in the order of the catalogue; there is one of each kind. */
-    async prepared(deformation) {
+    async insertEdit(deformation) {
       const others = this.isProposal ? [] : this.steps;
       const known = others.findIndex((s2) => s2.deformation === deformation && !isCaption(s2));
-      if (known >= 0) return this.choosing(known);
+      if (known >= 0) return this.showStep(known);
       const step2 = await this.opening(deformation, []);
       if (!step2) return;
       const rank = (s2) => this.catalogue.findIndex((d) => d.name === s2.deformation);
       const at = others.filter((s2) => this.isFirst(s2) && rank(s2) < rank(step2)).length;
-      this.steps = others.toSpliced(at, 0, step2);
-      this.selected = at;
-      this.tell("steps");
-      this.dropHandles();
-      await this.proposed();
+      await this.commitNew(others.toSpliced(at, 0, step2), at);
     }
     /** Inserts words after existing ones, before all other steps. Returns their step, which is stored when it is committed. */
     caption(args) {
@@ -1471,31 +1470,30 @@
     }
     /** Replaces the list of steps. */
     arrange(steps, selected) {
-      return this.inTurn(() => this.arranged(steps, selected));
-    }
-    async arranged(steps, selected) {
-      this.steps = steps;
-      this.appends = false;
-      this.selected = Math.max(0, Math.min(selected, steps.length - 1));
-      this.tell("steps");
-      this.dropHandles();
-      await this.commit();
-      if (this.steps.length === 0 && this.state) await this.load(this.state);
-      this.tell("steps");
+      return this.inTurn(async () => {
+        this.steps = steps;
+        this.appends = false;
+        this.selected = Math.max(0, Math.min(selected, steps.length - 1));
+        this.tell("steps");
+        this.dropHandles();
+        await this.commit();
+        if (this.steps.length === 0 && this.state) await this.load(this.state);
+        this.tell("steps");
+      });
     }
     select(step2) {
-      return this.inTurn(() => this.choosing(step2));
+      return this.inTurn(() => this.showStep(step2));
     }
-    async choosing(step2) {
+    async showStep(step2) {
       this.selected = step2;
       this.tell("steps");
       await this.refresh();
     }
-    /** Sets a parameter of the edited step. */
+    /** Sets a parameter of the edited step: `isDone` stores it, otherwise a draft is shown. */
     set(name, values, isDone) {
       const { step: step2 } = this;
       if (!step2) return;
-      if (isDone && NET.has(name) && this.handles?.net) return void this.inTurn(() => this.renet({ [name]: values }));
+      if (isDone && NET_PARAMS.has(name) && this.handles?.net) return void this.inTurn(() => this.renet({ [name]: values }));
       const { presets } = this.deformation(step2.deformation)?.gallery ?? {};
       if (name === presets) {
         for (const [other, { adjust }] of Object.entries(this.grips[this.selected]?.params ?? {})) if (adjust) delete step2.args[other];
@@ -1507,12 +1505,11 @@
         for (const other of instead.others) delete step2.args[other];
         if (instead.with) step2.args[instead.with[0]] ??= [instead.with[1]];
       }
-      if (isDone) void this.commit();
-      else this.draft(performance.now());
+      void (isDone ? this.commit() : this.draft(performance.now()));
     }
     /** Sets a parameter by a key; keys that follow belong to the same change. */
     setSoon(name, values) {
-      if (NET.has(name) && this.handles?.net) return this.set(name, values, true);
+      if (NET_PARAMS.has(name) && this.handles?.net) return this.set(name, values, true);
       this.set(name, values, false);
       this.commitSoon();
       this.tell("values");
@@ -1533,11 +1530,11 @@
     }
     /** Changes the number of control points of the step's net, which bends as before. */
     async renet(values) {
-      const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
+      const answer = await this.request({ do: "renet", steps: this.visible, values });
       if (!answer?.step) return this.tell("steps");
       const [a, b] = this.state?.toPx ?? [1, 0];
       const mm = (answer.moved ?? 0) * Math.hypot(a, b) * 25.4 / 96;
-      if (mm >= SEEN) toast(`The shape has moved by up to ${mm.toFixed(mm < 10 ? 2 : 0)} mm: so few points cannot hold it`);
+      if (mm >= VISIBLE_MM) toast(`The shape has moved by up to ${mm.toFixed(mm < 10 ? 2 : 0)} mm: so few points cannot hold it`);
       this.steps = this.steps.map((s2, i) => i === this.selected ? answer.step : s2);
       this.tell("steps");
       this.dropHandles();
@@ -1546,12 +1543,13 @@
     grip(name) {
       return this.grips[this.selected]?.params[name];
     }
-    /** Returns the radius of a circle around which the artwork would fit; `null` if it fits, or is stretched. */
-    tooSmall(name) {
+    /** Returns the least radius around which the artwork fits, if it is longer than its full circle and is not stretched; else `null`. */
+    leastRadius(name) {
       const [circle2, frame, step2] = [this.grip(name)?.circle, this.grips[this.selected]?.frame, this.step];
       if (!circle2 || !frame || name !== "along" || ["stretch", "copies", "width"].some((other) => step2?.args[other])) return null;
-      const least = frame[2] / (Math.abs(circle2[4] - circle2[3]) * (Math.PI / 180));
-      return circle2[2] < least && Math.abs(Math.abs(circle2[4] - circle2[3]) - 360) < 1e-6 ? least : null;
+      const [, , radius, start, end2] = circle2;
+      const least = frame[2] / (Math.abs(end2 - start) * (Math.PI / 180));
+      return radius < least && Math.abs(Math.abs(end2 - start) - 360) < 1e-6 ? least : null;
     }
     take(answer) {
       this.problem = null;
@@ -1582,12 +1580,12 @@
       this.tell("handles");
     }
     /** Adopts changes of the steps by another page. */
-    async hear(news) {
+    async takeNews(news) {
       if (news.event !== "changed" || !news.state) return;
       if (this.isDragging) {
         if (news.state.drawing === this.state?.drawing) return;
         this.hold?.();
-        this.endPause();
+        this.stopCommitTimer();
       }
       const { file } = this.state ?? news.state;
       await this.load(news.state);
@@ -1602,6 +1600,10 @@
         return null;
       }
     }
+    /** Asks the server, and shows its message if it refuses. */
+    request(question) {
+      return this.attempt(() => this.connection.ask(question));
+    }
     fail(problem) {
       this.problem = problem;
       this.tell("report");
@@ -1613,15 +1615,16 @@
         if (!handles) return null;
         const denser = handles.denser(at, reach);
         if (denser) await this.renet(denser);
-        else if (!await this.added(handles, at, others, reach)) return null;
+        else if (!await this.addPoints(handles, at, others, reach)) return null;
         return this.handles?.nearest(at)?.key ?? null;
       });
     }
-    async added(handles, at, others, reach) {
-      const places = handles.isFree(at, reach) ? [at, ...others] : [at];
-      const sources = handles.pairs ? await Promise.all(places.map((p) => this.preimage(p))) : places;
+    /** Returns `false` if no point can be added at `at`. */
+    async addPoints(handles, at, others, reach) {
+      const points = handles.isFree(at, reach) ? [at, ...others] : [at];
+      const sources = handles.addsPins ? await Promise.all(points.map((p) => this.preimage(p))) : points;
       if (this.handles !== handles || !sources[0]) return false;
-      const isAdded = places.map((p, i) => sources[i] != null && handles.add(p, sources[i], reach));
+      const isAdded = points.map((p, i) => sources[i] != null && handles.add(p, sources[i], reach));
       if (!isAdded[0]) return false;
       this.tell("handles");
       await this.commit();
@@ -1632,15 +1635,15 @@
       for (let k = this.visible.length; k > 0; k--) {
         const steps = this.visible.slice(0, k);
         if (this.isFirst(steps[k - 1]) || steps[k - 1]?.hidden || this.gone.includes(k - 1)) continue;
-        at = (await this.attempt(() => this.connection.ask({ do: "preimage", steps, at })))?.at ?? at;
+        at = (await this.request({ do: "preimage", steps, at }))?.at ?? at;
       }
       return at;
     }
     /** Returns the point of the artwork that the step maps to `at`. */
     async preimage(at) {
-      const answer = await this.attempt(() => this.connection.ask({ do: "preimage", steps: this.visible, at }));
-      if (answer?.at === null) this.fail("No place of the artwork comes to lie there");
-      return answer?.at ?? null;
+      const source = (await this.request({ do: "preimage", steps: this.visible, at }))?.at;
+      if (source === null) this.fail("No place of the artwork comes to lie there");
+      return source ?? null;
     }
   };
 
@@ -1733,13 +1736,9 @@
   var Opening = class {
     constructor(app2) {
       this.app = app2;
-      const chosen = byId("open-file");
-      byId("open").addEventListener("click", () => chosen.click());
-      chosen.addEventListener("change", () => {
-        const file = chosen.files?.[0];
-        chosen.value = "";
-        if (file) void this.open(file);
-      });
+      const fileInput = byId("open-file");
+      byId("open").addEventListener("click", () => fileInput.click());
+      onFile(fileInput, (file) => void this.open(file));
       window.addEventListener("dragover", (e) => {
         e.preventDefault();
         if (e.dataTransfer) e.dataTransfer.dropEffect = "copy";
@@ -1779,7 +1778,7 @@
   };
   async function bring(app2, file) {
     const bytes = await base64(file);
-    const answer = await app2.attempt(() => app2.connection.ask({ do: "bring", name: file.name, bytes }));
+    const answer = await app2.request({ do: "bring", name: file.name, bytes });
     if (!answer?.written) return null;
     if (answer.copied) toast(`${file.name} was copied beside the drawing`);
     return answer.written;
@@ -1793,11 +1792,10 @@
   }
 
   // src/background.ts
-  var MM = 96 / 25.4;
   var OPACITY = 50;
   var NOTCH = 15;
   var ABOVE2 = 26;
-  var PLACES = 100;
+  var SAMPLES2 = 100;
   var TYPED = { x: ["mm", MM], y: ["mm", MM], width: ["mm", MM, 0.01], turn: ["°", 1] };
   var Background = class {
     constructor(app2, stage2) {
@@ -1806,44 +1804,39 @@
       stage2.behind.append(this.layer);
       stage2.overlay.append(this.frame);
       stage2.around = () => this.file ? this.corners : [];
-      stage2.onLayout.push(() => this.place());
-      this.button.addEventListener("click", () => this.file ? this.show(this.box.hidden !== false) : this.chosen.click());
-      this.chosen.addEventListener("change", () => {
-        const file = this.chosen.files?.[0];
-        this.chosen.value = "";
-        if (file) {
-          void this.take(file).then(() => {
-            app2.screen.reveal();
-            return this.keep();
-          });
-        }
+      stage2.onLayout.push(() => this.placeFrame());
+      this.button.addEventListener("click", () => this.file ? this.show(this.box.hidden !== false) : this.fileInput.click());
+      onFile(this.fileInput, async (file) => {
+        await this.take(file);
+        app2.screen.reveal();
+        await this.keep();
       });
-      this.opacity.addEventListener("input", () => this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100)));
+      this.opacity.addEventListener("input", () => this.showOpacity());
       this.opacity.addEventListener("change", () => void this.keep());
-      byId("background-other").addEventListener("click", () => this.chosen.click());
+      byId("background-other").addEventListener("click", () => this.fileInput.click());
       byId("background-remove").addEventListener("click", () => {
         this.clear();
         void this.keep();
       });
-      this.outline.addEventListener("click", () => void this.shape());
+      this.outline.addEventListener("click", () => void this.bendInto());
       for (const [name, [unit, size, least]] of Object.entries(TYPED)) {
         const input = byId(`background-${name}`);
         const number = (text) => inUnits(text, unit) ?? NaN;
         const isWrong = (text) => number(text) >= (least ?? -Infinity) ? null : asked(unit, least);
-        const field = new Field(input, () => String(Number((this.lie[name] / size).toFixed(2))), (text) => {
-          this.lay({ [name]: number(text) * size });
+        const field = new Field(input, () => String(Number((this.placement[name] / size).toFixed(2))), (text) => {
+          this.move({ [name]: number(text) * size });
           void this.keep();
           return null;
         }, isWrong);
         this.box.querySelector(".messages").append(field.message);
         this.fields.push(field);
       }
-      this.ground.addEventListener("pointerdown", (e) => this.grab(e, ([x, y]) => ([px, py]) => ({ x: this.lie.x + px - x, y: this.lie.y + py - y })));
+      this.ground.addEventListener("pointerdown", (e) => this.drag(e, ([x, y]) => ([px, py]) => ({ x: this.placement.x + px - x, y: this.placement.y + py - y })));
       this.ground.addEventListener("keydown", (e) => this.key(e));
-      this.knobs.forEach((knob, i) => knob.addEventListener("pointerdown", (e) => this.grab(e, (from) => i < 4 ? this.scaled(i, from) : this.turned(from))));
-      app2.listen((change) => {
-        if (change === "link") this.isKept = false;
-        if (change !== "state" || this.isKept) return;
+      this.knobs.forEach((knob, i) => knob.addEventListener("pointerdown", (e) => this.drag(e, (from) => i < 4 ? this.scaling(i, from) : this.rotation(from))));
+      app2.listen(["link"], () => this.isKept = false);
+      app2.listen(["state"], () => {
+        if (this.isKept) return;
         this.isKept = true;
         void (this.file ? this.keep() : this.restore());
       });
@@ -1867,11 +1860,11 @@
     frame = s("g", { class: "lie", visibility: "hidden" }, this.ground, this.edge, ...this.knobs);
     button = byId("background");
     box = byId("background-box");
-    chosen = byId("background-file");
+    fileInput = byId("background-file");
     outline = byId("background-outline");
     file = null;
     isDrawing = false;
-    lie = { x: 0, y: 0, width: 1, turn: 0 };
+    placement = { x: 0, y: 0, width: 1, turn: 0 };
     /** Ratio of height to width. */
     ratio = 1;
     fields = [];
@@ -1883,20 +1876,23 @@
     };
     /** Stores the background in the server, until the page is loaded again. */
     async keep() {
-      const { file, lie, opacity } = this;
-      const background2 = file && { name: file.name, type: file.type, bytes: await base64(file), lie, opacity: opacity.value };
-      await this.app.attempt(() => this.app.connection.ask({ do: "keep-background", background: background2 }));
+      const { file, placement, opacity } = this;
+      const background2 = file && { name: file.name, type: file.type, bytes: await base64(file), lie: placement, opacity: opacity.value };
+      await this.app.request({ do: "keep-background", background: background2 });
     }
     async restore() {
-      const kept2 = (await this.app.attempt(() => this.app.connection.ask({ do: "background" })))?.background;
+      const kept2 = (await this.app.request({ do: "background" }))?.background;
       if (!kept2) return;
       const content = Uint8Array.from(atob(kept2.bytes), (c) => c.charCodeAt(0));
       if (!await this.take(new File([content], kept2.name, { type: kept2.type }))) return;
       this.opacity.value = kept2.opacity;
-      this.image.setAttribute("opacity", String(Number(kept2.opacity) / 100));
-      this.lay(kept2.lie);
+      this.showOpacity();
+      this.move(kept2.lie);
       this.show(false);
       this.app.screen.reveal();
+    }
+    showOpacity() {
+      this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100));
     }
     /** Shows a file behind the drawing: a drawing at its original size and position, a picture as wide as the page. */
     async take(file) {
@@ -1917,18 +1913,18 @@
       this.ratio = probe.naturalHeight / Math.max(probe.naturalWidth, 1);
       this.outline.hidden = this.app.state?.program !== null;
       this.image.setAttribute("href", url);
-      this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100));
-      this.lay(this.isDrawing ? { x: 0, y: 0, width: probe.naturalWidth, turn: 0 } : { x: x0, y: y0, width: x1 - x0, turn: 0 });
+      this.showOpacity();
+      this.move(this.isDrawing ? { x: 0, y: 0, width: probe.naturalWidth, turn: 0 } : { x: x0, y: y0, width: x1 - x0, turn: 0 });
       this.show(true);
       return true;
     }
     get middle() {
-      const { x, y, width } = this.lie;
+      const { x, y, width } = this.placement;
       return [x + width / 2, y + width * this.ratio / 2];
     }
     /** The corners clockwise from the upper left, in px of the drawing. */
     get corners() {
-      const [[cx, cy], { x, y, width, turn }] = [this.middle, this.lie];
+      const [[cx, cy], { x, y, width, turn }] = [this.middle, this.placement];
       const [cos, sin] = [Math.cos(turn * Math.PI / 180), Math.sin(turn * Math.PI / 180)];
       return [[x, y], [x + width, y], [x + width, y + width * this.ratio], [x, y + width * this.ratio]].map(([px, py]) => [
         cx + cos * (px - cx) - sin * (py - cy),
@@ -1936,37 +1932,37 @@
       ]);
     }
     /** Moves, scales or rotates it. */
-    lay(change) {
-      Object.assign(this.lie, change);
-      const { x, y, width, turn } = this.lie;
+    move(change) {
+      Object.assign(this.placement, change);
+      const { x, y, width, turn } = this.placement;
       for (const [name, value] of Object.entries({ x, y, width, height: width * this.ratio })) this.image.setAttribute(name, String(value));
       this.layer.setAttribute("transform", `rotate(${turn} ${this.middle.join(" ")})`);
       this.outlines.setAttribute("transform", `translate(${x} ${y}) scale(${width / Number(this.outlines.dataset.width ?? 1)})`);
       for (const field of this.fields) field.refresh();
-      this.place();
+      this.placeFrame();
     }
     /** Updates the frame around it on the screen. */
-    place() {
+    placeFrame() {
       const { scale: scale2, shift } = this.stage.camera;
       const corners2 = this.corners.map(([x, y]) => [scale2 * x + shift[0], scale2 * y + shift[1]]);
       const [a, b] = [corners2[0], corners2[1]];
-      const [top, long] = [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(b[0] - a[0], b[1] - a[1]) || 1];
-      const turn = [top[0] + ABOVE2 * (b[1] - a[1]) / long, top[1] - ABOVE2 * (b[0] - a[0]) / long];
+      const [top, length2] = [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(b[0] - a[0], b[1] - a[1]) || 1];
+      const turn = [top[0] + ABOVE2 * (b[1] - a[1]) / length2, top[1] - ABOVE2 * (b[0] - a[0]) / length2];
       this.ground.setAttribute("d", `M${corners2.join("L")}Z`);
       this.edge.setAttribute("d", `M${corners2.join("L")}ZM${top}L${turn}`);
       [...corners2, turn].forEach((p, i) => this.knobs[i].setAttribute("transform", `translate(${p})`));
     }
-    /** Returns a scaling about the opposite corner. */
-    scaled(corner, from) {
-      const [[ox, oy], [cx, cy], { width }] = [this.corners[(corner + 2) % 4], this.middle, this.lie];
+    /** Returns the scalings about the opposite corner by a pointer that pressed at `from`. */
+    scaling(corner, from) {
+      const [[ox, oy], [cx, cy], { width }] = [this.corners[(corner + 2) % 4], this.middle, this.placement];
       const [ax, ay] = [from[0] - ox, from[1] - oy];
       return (to) => {
-        const k = Math.max(((to[0] - ox) * ax + (to[1] - oy) * ay) / (ax * ax + ay * ay || 1), 1e-3);
-        return { x: ox + k * (cx - ox) - k * width / 2, y: oy + k * (cy - oy) - k * width * this.ratio / 2, width: k * width };
+        const factor2 = Math.max(((to[0] - ox) * ax + (to[1] - oy) * ay) / (ax * ax + ay * ay || 1), 1e-3);
+        return { x: ox + factor2 * (cx - ox) - factor2 * width / 2, y: oy + factor2 * (cy - oy) - factor2 * width * this.ratio / 2, width: factor2 * width };
       };
     }
-    turned(from) {
-      const [[cx, cy], { turn }] = [this.middle, this.lie];
+    rotation(from) {
+      const [[cx, cy], { turn }] = [this.middle, this.placement];
       const angle = ([x, y]) => Math.atan2(y - cy, x - cx) * 180 / Math.PI;
       return (to, { shiftKey }) => {
         const now = turn + angle(to) - angle(from);
@@ -1974,10 +1970,10 @@
       };
     }
     /** Follows a pointer from a point in px of the drawing until it is lifted, or Escape cancels the drag. */
-    grab(e, begin) {
+    drag(e, begin) {
       if (e.button !== 0) return;
       e.stopPropagation();
-      const before2 = { ...this.lie };
+      const before2 = { ...this.placement };
       const at = (event) => {
         const { scale: scale2, shift } = this.stage.camera;
         const [x, y] = this.stage.point(event);
@@ -1991,23 +1987,23 @@
       };
       window.addEventListener("pointermove", (event) => {
         if (event.pointerId !== e.pointerId) return;
-        Object.assign(this.lie, before2);
-        this.lay(change(at(event), event));
+        Object.assign(this.placement, before2);
+        this.move(change(at(event), event));
       }, stop);
       for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, end2, stop);
       window.addEventListener("keydown", ({ key }) => {
         if (key !== "Escape") return;
-        this.lay(before2);
+        this.move(before2);
         end2();
       }, stop);
     }
     key(e) {
-      const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
-      if (!by) return;
+      const direction = ARROWS[e.key];
+      if (!direction) return;
       e.preventDefault();
       e.stopPropagation();
-      const far = (e.shiftKey ? 10 : 1) / this.stage.camera.scale;
-      this.lay({ x: this.lie.x + far * by[0], y: this.lie.y + far * by[1] });
+      const px = (e.shiftKey ? 10 : 1) / this.stage.camera.scale;
+      this.move({ x: this.placement.x + px * direction[0], y: this.placement.y + px * direction[1] });
       void this.keep();
     }
     show(on2) {
@@ -2028,24 +2024,24 @@
       this.show(false);
     }
     /** Bends the artwork into an outline of the background: a clicked path, or points around the object in a photograph. */
-    async shape() {
+    async bendInto() {
       const { app: app2, file, stage: stage2, outlines } = this;
-      const closed2 = app2.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
-      if (!file || !closed2) return;
-      const choose = (value) => void app2.choose("envelope", { envelope: [value] }, closed2.label);
+      const variant = app2.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
+      if (!file || !variant) return;
+      const choose = (value) => void app2.choose("envelope", { envelope: [value] }, variant.label);
       this.show(false);
       if (!this.isDrawing) return this.onRound(choose);
       if (outlines.childElementCount === 0) {
         const bytes = await base64(file);
-        const answer = await app2.attempt(() => app2.connection.ask({ do: "drawn", name: file.name, bytes }));
+        const answer = await app2.request({ do: "drawn", name: file.name, bytes });
         const root = apart(answer?.svg, "behind");
         if (!root) return;
         outlines.dataset.width = root.getAttribute("width") ?? "1";
         outlines.replaceChildren(...Array.from(root.children));
-        this.lay({});
+        this.move({});
       }
       const paths = Array.from(outlines.querySelectorAll("path")).filter((path) => !path.closest("defs"));
-      if (paths.length === 0) return app2.fail(`${file.name} has no paths: click points around a shape with “Draw path” among the settings of “${closed2.label}”`);
+      if (paths.length === 0) return app2.fail(`${file.name} has no paths: click points around a shape with “Draw path” among the settings of “${variant.label}”`);
       const [only] = paths;
       if (only && paths.length === 1 && !/Z.*M/i.test(only.getAttribute("d") ?? "")) return choose(ring(only, stage2, this.corners[0]));
       stage2.pick((path, at) => choose(ring(path, stage2, stage2.camera.inPx(at))), ".outlines path", `Click a path of ${file.name}`);
@@ -2053,14 +2049,14 @@
   };
   function ring(path, stage2, [x, y]) {
     const [box, m] = [stage2.svg.getBoundingClientRect(), path.getScreenCTM()];
-    const place2 = (px, py) => stage2.camera.toUser([m.a * px + m.c * py + m.e - box.x, m.b * px + m.d * py + m.f - box.y]);
-    const rings = (path.getAttribute("d") ?? "").split(/(?=M)/).map((d) => d.replace(/Z\s*$/, "").replace(/(-?[\d.]+)[\s,]+(-?[\d.]+)/g, (_, px, py) => place2(Number(px), Number(py)).map(short).join(",")));
-    const far = (d) => {
+    const toUser = (px, py) => stage2.camera.toUser([m.a * px + m.c * py + m.e - box.x, m.b * px + m.d * py + m.f - box.y]);
+    const rings = (path.getAttribute("d") ?? "").split(/(?=M)/).map((d) => d.replace(/Z\s*$/, "").replace(/(-?[\d.]+)[\s,]+(-?[\d.]+)/g, (_, px, py) => toUser(Number(px), Number(py)).map(short).join(",")));
+    const distance2 = (d) => {
       const line = s("path", { d });
-      const places = Array.from({ length: PLACES }, (_, i) => line.getPointAtLength(line.getTotalLength() * i / PLACES));
-      return Math.min(...places.map((p) => stage2.camera.inPx([p.x, p.y])).map(([px, py]) => Math.hypot(px - x, py - y)));
+      const samples = Array.from({ length: SAMPLES2 }, (_, i) => line.getPointAtLength(line.getTotalLength() * i / SAMPLES2));
+      return Math.min(...samples.map((p) => stage2.camera.inPx([p.x, p.y])).map(([px, py]) => Math.hypot(px - x, py - y)));
     };
-    const nearest3 = rings.reduce((best, d) => far(d) < far(best) ? d : best);
+    const nearest3 = rings.reduce((best, d) => distance2(d) < distance2(best) ? d : best);
     return `${nearest3.trim()} Z`;
   }
 
@@ -2086,6 +2082,7 @@
     box = byId("caption-box");
     text = byId("caption-text");
     step = null;
+    /** The words when typing began; empty for new ones. */
     before = "";
     /** Asks for the position of words with these values. */
     begin(args) {
@@ -2108,9 +2105,9 @@
       if (this.box.hidden || !at) return;
       const [x, y] = this.stage.camera.toScreen(at);
       const { clientWidth, clientHeight } = this.stage.svg;
-      const within2 = (v, most) => Math.min(Math.max(v, 0), Math.max(most, 0));
-      this.box.style.left = `${within2(x, clientWidth - this.box.offsetWidth)}px`;
-      this.box.style.top = `${within2(y + BELOW, clientHeight - this.box.offsetHeight)}px`;
+      const clamp2 = (v, most) => Math.min(Math.max(v, 0), Math.max(most, 0));
+      this.box.style.left = `${clamp2(x, clientWidth - this.box.offsetWidth)}px`;
+      this.box.style.top = `${clamp2(y + BELOW, clientHeight - this.box.offsetHeight)}px`;
     }
     typed() {
       this.text.rows = this.text.value.split("\n").length;
@@ -2133,7 +2130,7 @@
   };
 
   // src/gallery.ts
-  var ALSO = {
+  var SEARCH_TERMS = {
     shaper: "bottle label neck",
     envelope: "lines in a shape text in a shape badge",
     bend: "text on path words on a line badge seal",
@@ -2141,7 +2138,7 @@
     simplify: "smooth clean up fewer nodes traced",
     offset: "outset outline grow bolder thicker inset shrink thinner"
   };
-  var WANTED = [
+  var TASKS = [
     ["Arch", "warp/arc warp/arch warp/arc-upper warp/arc-lower wordart/arch-up wordart/arch-down wordart/arch-up-pour wordart/arch-down-pour wordart/can-up wordart/can-down wordart/curve-up wordart/curve-down"],
     ["Wave", "warp/flag warp/wave wave wordart/wave1 wordart/wave2 wordart/double-wave1 wordart/wave4 warp/rise"],
     ["Bulge", "warp/bulge warp/inflate warp/fisheye warp/squeeze bulge lens wordart/inflate wordart/deflate wordart/inflate-top wordart/inflate-bottom wordart/deflate-top wordart/deflate-bottom wordart/deflate-inflate wordart/deflate-inflate-deflate"],
@@ -2153,10 +2150,8 @@
   var Gallery = class {
     constructor(app2) {
       this.app = app2;
-      app2.listen((change) => {
-        if (change === "state") this.build();
-        if (change === "steps") this.mark();
-      });
+      app2.listen(["state"], () => this.build());
+      app2.listen(["steps"], () => this.mark());
       this.search.addEventListener("input", () => this.filter());
       this.search.addEventListener("keydown", (e) => {
         if (e.key === "Enter" && this.search.value.trim() !== "") this.box.querySelector("section:not([hidden]) :is(.card, .preset):not([hidden])")?.click();
@@ -2168,94 +2163,89 @@
     cards = [];
     queue = [];
     isDrawing = false;
-    own = h("section", { hidden: true });
+    userPresets = h("section", { hidden: true });
     /** The message that nothing was found. */
     none = h("p", { class: "none", role: "status", hidden: true });
     /** The names of the user's presets. */
     names = [];
-    shown = "";
-    seen = new IntersectionObserver((entries) => {
+    /** The drawing in the pictures. */
+    drawing = "";
+    /** Queues cards that scroll into view. */
+    observer = new IntersectionObserver((entries) => {
       for (const entry of entries) {
         const card = this.cards.find((c) => c.button === entry.target);
         if (!entry.isIntersecting || !card) continue;
-        this.seen.unobserve(entry.target);
+        this.observer.unobserve(entry.target);
         this.queue.push(card);
-        void this.draw();
+        void this.drawQueued();
       }
     }, { rootMargin: "150px" });
     build() {
-      if (this.shown === "") void this.loadPresets();
+      if (this.drawing === "") void this.app.request({ do: "presets" }).then((answer) => answer?.presets && this.showPresets(answer.presets));
       const { drawing = "" } = this.app.state ?? {};
-      if (drawing === this.shown || this.app.catalogue.length === 0) return;
-      this.shown = drawing;
+      if (drawing === this.drawing || this.app.catalogue.length === 0) return;
+      this.drawing = drawing;
       for (const { image } of this.cards) URL.revokeObjectURL(image.src);
       this.cards = [];
       this.queue = [];
       const all = this.app.catalogue.filter((d) => !d.first);
-      const first = this.app.catalogue.filter((d) => d.first);
-      const byHand = all.filter((d) => isDragged(d) && !d.gallery).flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))]);
-      const presets = all.filter((d) => d.gallery).flatMap((d) => this.presets(d));
-      const effects = all.filter((d) => !isDragged(d) && !d.gallery).map((d) => this.whole(d));
+      const edits = this.app.catalogue.filter((d) => d.first);
+      const byHand = all.filter((d) => isDragged(d) && !d.gallery).flatMap((d) => [this.shapeCard(d), ...d.variants.map((v) => this.shapeCard(d, v))]);
+      const presets = all.filter((d) => d.gallery).flatMap((d) => this.presetCards(d));
+      const effects = all.filter((d) => !isDragged(d) && !d.gallery).map((d) => this.shapeCard(d));
       const rest = /* @__PURE__ */ new Set([...byHand, ...presets, ...effects]);
-      const wanted = WANTED.map(([title, names]) => {
+      const tasks = TASKS.map(([title, names]) => {
         const cards = names.split(" ").flatMap((name) => [...rest].filter((c) => [c.deformation, ...Object.values(c.args).flat()].join("/") === name));
         cards.forEach((c) => rest.delete(c));
         return this.section(title, cards);
       });
-      const left = (title, cards) => this.section(title, cards.filter((c) => rest.has(c)));
+      const others = (title, cards) => this.section(title, cards.filter((c) => rest.has(c)));
       this.box.replaceChildren(
         this.none,
-        this.own,
-        ...wanted,
-        left("By hand", byHand),
-        left("More styles", presets),
-        left("Effects", effects),
-        this.section("Before bending", first.map((d) => this.whole(d)))
+        this.userPresets,
+        ...tasks,
+        others("By hand", byHand),
+        others("More styles", presets),
+        others("Effects", effects),
+        this.section("Before bending", edits.map((d) => this.shapeCard(d)))
       );
       this.mark();
       this.filter();
-    }
-    async loadPresets() {
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "presets" }));
-      if (answer?.presets) this.showPresets(answer.presets);
     }
     /** Shows the user's presets. */
     showPresets(names) {
       this.names = names;
       const entry = (name) => {
-        const use = h("button", { type: "button", class: "preset" }, name);
-        use.addEventListener("click", async () => {
-          const answer = await this.app.attempt(() => this.app.connection.ask({ do: "preset", name }));
+        const use = button({ class: "preset" }, async () => {
+          const answer = await this.app.request({ do: "preset", name });
           if (answer?.steps) await this.app.arrange(answer.steps.map((step2) => ({ ...step2, exclude: this.app.locks })), answer.steps.length - 1);
           document.body.classList.remove("shapes-open");
-        });
-        const forget = h("button", { type: "button", class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, icon("close"));
-        forget.addEventListener("click", async () => {
-          const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
+        }, name);
+        const forget = button({ class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, async () => {
+          const answer = await this.app.request({ do: "forget-preset", name });
           if (!answer?.presets) return;
           this.showPresets(answer.presets);
-          const left = this.own.querySelectorAll(".small");
-          (left[Math.min(names.indexOf(name), left.length - 1)] ?? this.search).focus();
-        });
+          const others = this.userPresets.querySelectorAll(".small");
+          (others[Math.min(names.indexOf(name), others.length - 1)] ?? this.search).focus();
+        }, icon("close"));
         return h("li", {}, use, forget);
       };
-      this.own.replaceChildren(h("h2", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
+      this.userPresets.replaceChildren(h("h2", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
       this.filter();
     }
     section(title, cards) {
       const items = h("div", { class: "grid", role: "group", "aria-label": title }, ...cards.map((c) => c.button));
-      cards.forEach(({ button }, i) => button.tabIndex = i === 0 ? 0 : -1);
+      cards.forEach(({ button: button2 }, i) => button2.tabIndex = i === 0 ? 0 : -1);
       items.addEventListener("keydown", (e) => walk(e, items));
       return h("section", {}, h("h2", {}, title), items);
     }
     card(deformation, args, steps, text, variant = null) {
       const image = h("img", { alt: "", draggable: "false" });
-      const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
-      const known = [...this.app.deformation(deformation)?.knownAs ?? [], variant && deformation !== "envelope" ? "" : ALSO[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
-      const card = { button, image, steps, deformation, args, variant, words: [button.textContent, ...known].join(" ") };
-      button.addEventListener("click", () => void this.choose(card));
+      const cardButton = button({ class: "card" }, () => void this.choose(card), h("span", { class: "thumb" }, image), text);
+      const terms = [...this.app.deformation(deformation)?.knownAs ?? [], variant && deformation !== "envelope" ? "" : SEARCH_TERMS[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
+      const card = { button: cardButton, image, steps, deformation, args, variant, searchText: [cardButton.textContent, ...terms].join(" ") };
       this.cards.push(card);
-      this.seen.observe(button);
+      this.observer.observe(cardButton);
       return card;
     }
     async choose({ deformation, args, variant }) {
@@ -2268,17 +2258,18 @@
       await app2.choose(deformation, args, variant?.label ?? null);
       if (isReplaced) toast(`${name(app2.step)} replaces ${old}. Undo brings it back, “Add step” keeps both`);
     }
-    whole(d, variant = null) {
+    /** Returns the card of a deformation, or of one of its variants. */
+    shapeCard(d, variant = null) {
       const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? (this.isTaken(called(d)) ? `${called(d)} (effect)` : called(d))), variant);
       card.button.title = capital(d.title);
-      card.words += ` ${called(d)} ${d.name} ${d.title}`;
+      card.searchText += ` ${called(d)} ${d.name} ${d.title}`;
       return card;
     }
     /** Returns `true` if an earlier shape has this name; the later one then needs a description. */
     isTaken(name) {
-      return this.cards.some(({ button }) => button.textContent === name);
+      return this.cards.some(({ button: button2 }) => button2.textContent === name);
     }
-    presets(d) {
+    presetCards(d) {
       const { presets } = d.gallery;
       const names = d.params.find((p) => p.name === presets)?.words ?? [];
       return names.map((name) => {
@@ -2287,7 +2278,7 @@
       });
     }
     /** Draws the visible cards one by one, so that neither dragging nor the picture of the drawing is delayed. */
-    async draw() {
+    async drawQueued() {
       if (this.isDrawing) return;
       this.isDrawing = true;
       for (let card = this.queue.shift(); card; card = this.queue.shift()) {
@@ -2305,29 +2296,28 @@
     /** Marks the shape of the edited step. */
     mark() {
       const { step: step2 } = this.app;
-      for (const { button, deformation, args, variant } of this.cards) {
-        const others = this.app.deformation(deformation)?.variants ?? [];
-        const isVariant = variant ? step2?.args[variant.param] !== void 0 && others.find((o) => o.param === variant.param) === variant : !others.some((o) => step2?.args[o.param]);
+      for (const { button: button2, deformation, args, variant } of this.cards) {
+        const variants = this.app.deformation(deformation)?.variants ?? [];
+        const isVariant = variant ? step2?.args[variant.param] !== void 0 && variants.find((v) => v.param === variant.param) === variant : !variants.some((v) => step2?.args[v.param]);
         const isChosen = step2?.deformation === deformation && isVariant && Object.entries(args).every(([k, v]) => step2.args[k]?.[0] === v[0]);
-        button.setAttribute("aria-pressed", String(isChosen));
+        button2.setAttribute("aria-pressed", String(isChosen));
       }
     }
     filter() {
-      const wanted = this.search.value.trim().toLowerCase();
       const plain2 = (text) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, " ").trim();
-      const all = plain2(wanted).split(" ");
-      const fits = (words2) => all.every((word) => plain2(words2).includes(word));
-      for (const { button, words: words2 } of this.cards) button.hidden = !fits(words2);
-      const presets = Array.from(this.own.querySelectorAll("li"));
+      const typedWords = plain2(this.search.value).split(" ");
+      const fits = (text) => typedWords.every((word) => plain2(text).includes(word));
+      for (const { button: button2, searchText } of this.cards) button2.hidden = !fits(searchText);
+      const presets = Array.from(this.userPresets.querySelectorAll("li"));
       for (const preset of presets) preset.hidden = !fits(preset.textContent ?? "");
-      this.own.hidden = presets.every((preset) => preset.hidden);
+      this.userPresets.hidden = presets.every((preset) => preset.hidden);
       this.none.textContent = `No shape is called “${this.search.value.trim()}”`;
-      this.none.hidden = !this.own.hidden || this.cards.some(({ button }) => !button.hidden);
+      this.none.hidden = !this.userPresets.hidden || this.cards.some(({ button: button2 }) => !button2.hidden);
       for (const section of Array.from(this.box.children)) {
-        if (section === this.own || section === this.none) continue;
+        if (section === this.userPresets || section === this.none) continue;
         const shown3 = Array.from(section.querySelectorAll(".card")).filter((card) => !card.hidden);
         if (shown3.length > 0 && !shown3.some((card) => card.tabIndex === 0)) shown3[0].tabIndex = 0;
-        section.hidden = !Array.from(section.querySelectorAll(".card")).some((c) => !c.hidden);
+        section.hidden = shown3.length === 0;
       }
     }
   };
@@ -2348,7 +2338,7 @@
   }
 
   // src/keys.ts
-  var KEYS2 = [
+  var KEYS = [
     ["Ctrl Z", "Undo; while something is dragged, put it back"],
     ["Ctrl Shift Z", "Redo"],
     ["Ctrl S", "Save"],
@@ -2367,13 +2357,13 @@
   function showKeys() {
     const dialog = byId("keys-dialog");
     if (dialog.open) return dialog.close();
-    byId("keys-list").replaceChildren(...KEYS2.flatMap(([keys, what]) => [h("dt", {}, keys), h("dd", {}, what)]));
+    byId("keys-list").replaceChildren(...KEYS.flatMap(([keys, what]) => [h("dt", {}, keys), h("dd", {}, what)]));
     dialog.showModal();
   }
 
   // src/ground.ts
   var GROUNDS = ["white", "black", "checks"];
-  var CHOSEN = "pathwarp-ground";
+  var CHOICE_KEY = "pathwarp-ground";
   var PALE = 235;
   var Ground = class {
     shown = "white";
@@ -2381,16 +2371,14 @@
     drawing = "";
     constructor(app2) {
       this.show(this.chosen);
-      app2.listen((change) => {
-        if (change === "report") this.suit(app2.state?.drawing ?? "");
-      });
+      app2.listen(["report"], () => this.adapt(app2.state?.drawing ?? ""));
       byId("ground").addEventListener("click", () => {
         this.show(GROUNDS[(GROUNDS.indexOf(this.shown) + 1) % GROUNDS.length]);
-        localStorage.setItem(CHOSEN, this.shown);
+        localStorage.setItem(CHOICE_KEY, this.shown);
       });
     }
     get chosen() {
-      return GROUNDS.find((name) => name === localStorage.getItem(CHOSEN)) ?? "white";
+      return GROUNDS.find((name) => name === localStorage.getItem(CHOICE_KEY)) ?? "white";
     }
     show(name) {
       this.shown = name;
@@ -2398,7 +2386,7 @@
       byId("ground-name").textContent = name === "checks" ? "transparent" : name;
     }
     /** Shows an all-white drawing on black if the user has chosen white. */
-    suit(drawing) {
+    adapt(drawing) {
       const art = Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) :is(path, image)"));
       if (drawing === this.drawing || art.length === 0) return;
       this.drawing = drawing;
@@ -2420,30 +2408,26 @@
     picksParts = false;
     mirrors = false;
     smooths = true;
-    /** Points of other handles to snap to, collected at the start of a drag. */
-    snapTargets = [];
+    /** The points with which a moving handle can be aligned. */
+    snapPoints = [];
     /** Shows the lines to which the handle has snapped, in user units. */
     onSnap = () => {
     };
-    /** Returns the reflection for symmetry. */
-    reflection(handles) {
-      return reflection(handles);
-    }
     /** Returns the other points to add with a point: its reflection, if symmetry is on and that is more than `reach` (user units) away. */
     reflections(handles, at, reach) {
       const other = reflection(handles)(at);
       return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
     }
-    /** Returns a function that drags a line (by its handles `own`), and its reflection if symmetry is on. */
-    puller(handles, { handles: own, targets }) {
-      const partners = own.map((handle) => this.mirrors ? handles.partner(handle) : null);
+    /** Returns a function that drags a line, and its reflection if symmetry is on. */
+    puller(handles, { handles: pulled, targets }) {
+      const partners = pulled.map((handle) => this.mirrors ? handles.partner(handle) : null);
       const mirrored = reflection(handles);
       return (to) => {
         const wanted = targets(to);
-        own.forEach((handle, i) => {
+        pulled.forEach((handle, i) => {
           const partner = partners[i] ?? null;
           const at = wanted[i];
-          const partnerIndex = partner ? own.indexOf(partner) : -1;
+          const partnerIndex = partner ? pulled.indexOf(partner) : -1;
           const other = partnerIndex < 0 ? at : mirrored(wanted[partnerIndex]);
           const target = [(at[0] + other[0]) / 2, (at[1] + other[1]) / 2];
           handle.set(target, this.smooths);
@@ -2455,7 +2439,7 @@
     mover(handles, handle) {
       const partner = this.mirrors ? handles.partner(handle) : null;
       const mirrored = reflection(handles);
-      this.snapTargets = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
+      this.snapPoints = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
       const start = [...handle.get()];
       return (to, e) => {
         const [dx, dy] = [to[0] - start[0], to[1] - start[1]];
@@ -2471,8 +2455,8 @@
         return to;
       }
       const [x, y, w, h2] = handles.frame;
-      const xs = [x, x + w / 2, x + w, ...this.snapTargets.map((p) => p[0])];
-      const ys = [y, y + h2 / 2, y + h2, ...this.snapTargets.map((p) => p[1])];
+      const xs = [x, x + w / 2, x + w, ...this.snapPoints.map((p) => p[0])];
+      const ys = [y, y + h2 / 2, y + h2, ...this.snapPoints.map((p) => p[1])];
       const [nx, ny] = [nearest2(to[0], xs, reach), nearest2(to[1], ys, reach)];
       this.onSnap(nx, ny);
       return [nx ?? to[0], ny ?? to[1]];
@@ -2487,8 +2471,8 @@
   function nearest2(value, among, reach) {
     let best = null;
     for (const candidate of among) {
-      const off = Math.abs(candidate - value);
-      if (off <= reach && (best === null || off < Math.abs(best - value))) best = candidate;
+      const distance2 = Math.abs(candidate - value);
+      if (distance2 <= reach && (best === null || distance2 < Math.abs(best - value))) best = candidate;
     }
     return best;
   }
@@ -2513,10 +2497,8 @@
       this.app = app2;
       this.stage = stage2;
       this.modes = modes2;
-      app2.listen((change) => {
-        if (change === "state") void this.load();
-        if (change === "steps") this.show();
-      });
+      app2.listen(["state"], () => void this.load());
+      app2.listen(["steps"], () => this.show());
       byId("parts-all").addEventListener("click", () => void app2.scope([]));
       stage2.onPart = (name, adds) => this.clicked(name, adds);
     }
@@ -2530,46 +2512,41 @@
     rows = [];
     /** The names of parts hidden on the page; the file contains them regardless. */
     hidden = /* @__PURE__ */ new Set();
-    shown = "";
+    /** The drawing and its captions, as JSON, whose parts are listed. */
+    listed = "";
     file = "";
     async load() {
       const { drawing = "", file = "", steps = [] } = this.app.state ?? {};
-      const shown3 = JSON.stringify([drawing, ...steps.filter(isCaption)]);
-      if (shown3 === this.shown) return;
-      this.shown = shown3;
+      const listed = JSON.stringify([drawing, ...steps.filter(isCaption)]);
+      if (listed === this.listed) return;
+      this.listed = listed;
       if (file !== this.file) this.hidden.clear();
       this.file = file;
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
-      this.all = answer?.parts ?? [];
+      this.all = (await this.app.request({ do: "parts" }))?.parts ?? [];
       this.stage.parts = new Set(this.all.map(({ name }) => name));
       this.rows = this.all.map((part) => this.row(part));
       this.list.replaceChildren(...this.rows);
-      this.shade();
+      this.hideOnCanvas();
       this.show();
     }
     row(part) {
       const title = part.label ?? part.name.replace(/^([a-z]+)(.*) at \d+:\d+$/i, (_, tag, letter) => capital((ELEMENTS2[tag] ?? tag) + letter));
-      const choose = h("button", { type: "button", class: "part-name", title: part.name }, title);
-      choose.addEventListener("click", (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey));
-      choose.addEventListener("pointerenter", () => this.stage.lightParts([part, ...this.inside(part)].map(({ name }) => name)));
+      const choose = button({ class: "part-name", title: part.name }, (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey), title);
+      choose.addEventListener("pointerenter", () => this.stage.outlineParts([part, ...this.contentsOf(part)].map(({ name }) => name)));
       choose.addEventListener("pointerleave", () => this.show());
-      const button = (kind, label, action) => {
-        const b = h("button", { type: "button", class: `small ${kind}`, "aria-label": `${label} ${title}`, title: `${label} ${title}` }, icon(kind));
-        b.addEventListener("click", action);
-        return b;
-      };
+      const iconButton = (kind, label, click) => button({ class: `small ${kind}`, "aria-label": `${label} ${title}`, title: `${label} ${title}` }, click, icon(kind));
       const row = h(
         "li",
         {},
         choose,
-        button("eye", "Hide here:", () => this.hide(part)),
-        button("lock", "Lock:", () => void this.lock(part))
+        iconButton("eye", "Hide here:", () => this.hide(part)),
+        iconButton("lock", "Lock:", () => void this.lock(part))
       );
       row.style.setProperty("--depth", String(Math.min(part.depth, 8)));
       return row;
     }
-    /** Returns the contents of a group. */
-    inside(part) {
+    /** Returns the contents of a group, which follow it in the list. */
+    contentsOf(part) {
       const after = this.all.slice(this.all.indexOf(part) + 1);
       const end2 = after.findIndex(({ depth }) => depth <= part.depth);
       return end2 < 0 ? after : after.slice(0, end2);
@@ -2582,11 +2559,11 @@
     /** Returns `true` if a part is locked or hidden, or belongs to a group that is. */
     isOut(part) {
       const isOut = ({ name, selector }) => this.hidden.has(name) || this.app.locks.includes(selector);
-      return this.all.some((p) => isOut(p) && (p === part || this.inside(p).includes(part)));
+      return this.all.some((p) => isOut(p) && (p === part || this.contentsOf(p).includes(part)));
     }
     /** Selects a part alone, or adds it to the selection, or removes it. */
     toggle(part, adds) {
-      const { chosen } = this.app;
+      const { selectors: chosen } = this.app;
       const { selector } = part;
       const others = chosen.filter((s2) => s2 !== selector);
       const isChosen = others.length < chosen.length;
@@ -2597,7 +2574,7 @@
     hide(part) {
       if (!this.hidden.delete(part.name)) this.hidden.add(part.name);
       this.show();
-      this.shade();
+      this.hideOnCanvas();
     }
     /** Locks or unlocks a part. No step bends locked parts. */
     lock({ selector }) {
@@ -2605,7 +2582,7 @@
       return this.app.lock(locks.includes(selector) ? locks.filter((s2) => s2 !== selector) : [...locks, selector]);
     }
     show() {
-      const { chosen, locks } = this.app;
+      const { selectors: chosen, locks } = this.app;
       const hides = this.all.length < 2 || this.app.isFirst(this.app.step);
       byId("parts-box").hidden = hides;
       if (hides && this.modes.picksParts) byId("pick-parts").click();
@@ -2617,13 +2594,13 @@
       this.scope.textContent = count === 0 ? "This step bends everything." : `This step bends ${count === 1 ? "one part" : `${count} parts`}.`;
       byId("parts-all").hidden = count === 0;
       if (count > 0 || locks.length > 0) this.details.open = true;
-      const own = this.all.filter(({ selector }) => chosen.includes(selector));
-      this.stage.lightParts(this.modes.picksParts || this.details.open ? own.flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name) : []);
+      const selected = this.all.filter(({ selector }) => chosen.includes(selector));
+      this.stage.outlineParts(this.modes.picksParts || this.details.open ? selected.flatMap((p) => [p, ...this.contentsOf(p)]).map(({ name }) => name) : []);
     }
     /** Hides the hidden parts on the canvas. */
-    shade() {
-      const away = new Set(this.all.filter(({ name }) => this.hidden.has(name)).flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name));
-      this.stage.hideParts(away);
+    hideOnCanvas() {
+      const hidden = new Set(this.all.filter(({ name }) => this.hidden.has(name)).flatMap((p) => [p, ...this.contentsOf(p)]).map(({ name }) => name));
+      this.stage.hideParts(hidden);
     }
   };
 
@@ -2639,7 +2616,7 @@
       stage2.onFocus = (handle) => this.show(handle);
       stage2.onKeys = (handle) => this.say(handle);
       this.fields = this.inputs.map((input, i) => {
-        const place2 = (typed) => {
+        const coordinate = (typed) => {
           const q = evaluate(typed, "");
           const [x, y, w, h2] = app2.handles?.frame ?? [0, 0, 1, 1];
           if (!q || q.unit === "") return q?.value ?? null;
@@ -2653,13 +2630,13 @@
           stage2.moveTo(this.handle, i === 0 ? [value, at[1]] : [at[0], value]);
         };
         const read = () => this.handle ? shown2(this.handle)[i] : "";
-        const isWrong = (typed) => place2(typed) === null ? `${asked("")} or 50 %` : null;
+        const isWrong = (typed) => coordinate(typed) === null ? `${asked("")} or 50 %` : null;
         const take = (typed) => {
-          if (this.handle && typed !== read()) move(place2(typed));
+          if (this.handle && typed !== read()) move(coordinate(typed));
           return null;
         };
         const nudge = (typed, by) => {
-          const value = place2(typed);
+          const value = coordinate(typed);
           if (value === null || !this.handle) return null;
           move(value + by);
           return read();
@@ -2671,9 +2648,7 @@
       this.remove.addEventListener("click", () => {
         if (this.handle) stage2.remove(this.handle);
       });
-      app2.listen((change) => {
-        if (change === "handles") this.show(stage2.focusedHandle);
-      });
+      app2.listen(["handles"], () => this.show(stage2.focusedHandle));
     }
     show(handle) {
       this.handle = handle;
@@ -2693,8 +2668,8 @@
   }
 
   // src/camera.ts
-  var RANGE = [0.01, 64];
-  var FITTED = [1e-4, 1e5];
+  var ZOOM_RANGE = [0.01, 64];
+  var FIT_RANGE = [1e-4, 1e5];
   var Camera = class {
     /** The scale in screen = scale · px + shift. */
     scale = 1;
@@ -2727,7 +2702,7 @@
     }
     /** Magnifies by a factor around a point of the screen. */
     zoom(factor2, [x, y]) {
-      const scale2 = Math.min(Math.max(this.scale * factor2, Math.min(RANGE[0], this.scale)), Math.max(RANGE[1], this.scale));
+      const scale2 = Math.min(Math.max(this.scale * factor2, Math.min(ZOOM_RANGE[0], this.scale)), Math.max(ZOOM_RANGE[1], this.scale));
       const by = scale2 / this.scale;
       this.shift = [x - by * (x - this.shift[0]), y - by * (y - this.shift[1])];
       this.scale = scale2;
@@ -2735,21 +2710,20 @@
     /** Centres a box of the drawing, two corners in px, in a view of this size. */
     fit([x0, y0, x1, y1], [width, height]) {
       const scale2 = Math.min(width / Math.max(x1 - x0, 1e-9), height / Math.max(y1 - y0, 1e-9));
-      this.scale = Math.min(Math.max(scale2, FITTED[0]), FITTED[1]);
+      this.scale = Math.min(Math.max(scale2, FIT_RANGE[0]), FIT_RANGE[1]);
       this.shift = [(width - this.scale * (x0 + x1)) / 2, (height - this.scale * (y0 + y1)) / 2];
     }
   };
 
   // src/heat.ts
-  var FULL = Math.log2(2);
-  function cells({ columns, points, factors }, place2) {
+  function cells({ columns, points, factors }, toPx) {
     const byColour = /* @__PURE__ */ new Map();
     factors.forEach((factor2, k) => {
       const [i, j] = [k % columns, Math.floor(k / columns)];
       const at = (di, dj) => points[(j + dj) * (columns + 1) + i + di];
       const corners2 = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
       if (factor2 === null || corners2.some((c) => !c)) return;
-      const d = corners2.map((c) => place2(c).map((v) => v.toFixed(2)).join(",")).join("L");
+      const d = corners2.map((c) => toPx(c).map((v) => v.toFixed(2)).join(",")).join("L");
       const colour = shade(factor2);
       byColour.set(colour, [...byColour.get(colour) ?? [], `M${d}Z`]);
     });
@@ -2758,17 +2732,17 @@
       return s("path", { d: d.join(""), fill: fill2, "fill-opacity": opacity });
     });
   }
-  var STRONGEST = 0.8;
+  var FULL_OPACITY = 0.8;
   var STEPS = 16;
   function shade(factor2) {
     if (factor2 < 0) return "#e11d2e/0.85";
-    const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor2, 1e-6)) / FULL));
+    const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor2, 1e-6))));
     const step2 = Math.round(amount * STEPS) / STEPS;
-    return `${step2 < 0 ? "#2563eb" : "#ea7706"}/${(STRONGEST * Math.abs(step2)).toFixed(3)}`;
+    return `${step2 < 0 ? "#2563eb" : "#ea7706"}/${(FULL_OPACITY * Math.abs(step2)).toFixed(3)}`;
   }
 
   // src/selection.ts
-  var AROUND = 16;
+  var BOX_MARGIN = 16;
   var ABOVE3 = 26;
   var EDGE = 6;
   var Selection = class {
@@ -2812,12 +2786,12 @@
       this.layer.setAttribute("visibility", points.length > 1 ? "visible" : "hidden");
       if (points.length < 2) return;
       const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
-      const [x0, y0, x1, y1] = [Math.min(...xs) - AROUND, Math.min(...ys) - AROUND, Math.max(...xs) + AROUND, Math.max(...ys) + AROUND];
+      const [x0, y0, x1, y1] = [Math.min(...xs) - BOX_MARGIN, Math.min(...ys) - BOX_MARGIN, Math.max(...xs) + BOX_MARGIN, Math.max(...ys) + BOX_MARGIN];
       this.box = [[x0, y0], [x1, y1]];
       const middle2 = (x0 + x1) / 2;
       this.frame.setAttribute("d", `M${x0},${y0}H${x1}V${y1}H${x0}ZM${middle2},${y0}V${y0 - ABOVE3}`);
-      const places = { nw: [x0, y0], ne: [x1, y0], se: [x1, y1], sw: [x0, y1], turn: [middle2, y0 - ABOVE3] };
-      for (const [part, knob] of this.parts) knob.setAttribute("transform", `translate(${places[part].join(" ")})`);
+      const positions = { nw: [x0, y0], ne: [x1, y0], se: [x1, y1], sw: [x0, y1], turn: [middle2, y0 - ABOVE3] };
+      for (const [part, knob] of this.parts) knob.setAttribute("transform", `translate(${positions[part].join(" ")})`);
     }
     /** Returns `true` for a point in the box or on its edge. */
     holds([x, y]) {
@@ -2845,7 +2819,7 @@
     const all = [...chosen.filter((h2) => h2.shape !== "control"), ...chosen.filter((h2) => h2.shape === "control"), ...arms];
     const starts = all.map((h2) => [...h2.get()]);
     const partners = all.map((h2) => modes2.mirrors ? handles.partner(h2) : null).map((p) => p && !all.includes(p) ? p : null);
-    const mirrored = modes2.reflection(handles);
+    const mirrored = reflection(handles);
     return (image) => {
       const ends = starts.map(image);
       all.forEach((h2, i) => h2.set(ends[i], false));
@@ -2863,8 +2837,8 @@
       const d = path.getAttribute("d") ?? "";
       length2 += d.length;
       if (length2 > MOST) break;
-      const at = place(path);
-      const text = (p) => at(p).map((v) => v.toFixed(2)).join(",");
+      const toDrawing = drawingMap(path);
+      const text = (p) => toDrawing(p).map((v) => v.toFixed(2)).join(",");
       for (const { from, to, control } of anchors(d)) {
         nodes.push(`M${text(to)}h0`);
         const [first, last] = [control[0], control[control.length - 1]];
@@ -2873,11 +2847,11 @@
     }
     return { nodes: nodes.join(""), arms: arms.join("") };
   }
-  function place(path) {
+  function drawingMap(path) {
     let matrix = new DOMMatrix();
     for (let e = path; e && !e.classList.contains("art"); e = e.parentElement) {
-      const own = e.transform?.baseVal.consolidate()?.matrix;
-      if (own) matrix = new DOMMatrix([own.a, own.b, own.c, own.d, own.e, own.f]).multiply(matrix);
+      const m = e.transform?.baseVal.consolidate()?.matrix;
+      if (m) matrix = new DOMMatrix([m.a, m.b, m.c, m.d, m.e, m.f]).multiply(matrix);
     }
     return ([x, y]) => [matrix.a * x + matrix.c * y + matrix.e, matrix.b * x + matrix.d * y + matrix.f];
   }
@@ -2924,43 +2898,62 @@
   }
 
   // src/stage.ts
-  var MARGIN2 = 56;
-  var SHEET_MARGIN = 20;
-  var BESIDE = 28;
+  var MARGIN = 56;
+  var NARROW_MARGIN = 20;
+  var TOOLS_GAP = 28;
   var REACH = 18;
-  var PICKED = 8;
-  var GREETED = "pathwarp-greeted";
-  var DRAFT_OF_END = 1;
-  var MOST_OF_END = 60;
+  var PICK_REACH = 8;
+  var GREETED_KEY = "pathwarp-greeted";
+  var END_TOLERANCE = 1;
+  var END_TIME_LIMIT = 60;
   var Stage = class {
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.aheadArt, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.overlay, this.guides, this.marks, this.selection.layer, this.knobs, this.value, this.marquee);
+      this.svg.append(
+        s("defs", {}, this.checks),
+        ...this.shadows,
+        this.sheet,
+        this.behind,
+        this.aheadArt,
+        this.beforeArt,
+        this.art,
+        this.heat,
+        this.arms,
+        this.nodes,
+        this.shield,
+        this.highlight,
+        this.partOutlines,
+        this.overlay,
+        this.guides,
+        this.foldMarks,
+        this.selection.layer,
+        this.knobs,
+        this.value,
+        this.marquee
+      );
       const stage2 = this;
       app2.screen = {
-        show: (answer) => this.show(answer),
+        show: (answer) => this.showAnswer(answer),
         reveal: () => this.reveal(),
         get pixel() {
           return stage2.camera.pixel;
         }
       };
-      app2.listen((change) => {
-        if (change === "state") this.place();
-        if (change === "handles") this.rebuild();
-        if (change === "report" && this.showsStretch) void this.drawStretch();
-        if (change === "report" || change === "steps") void this.drawEnd();
-      });
+      app2.listen(["state"], () => this.takeState());
+      app2.listen(["handles"], () => this.rebuild());
+      app2.listen(["report"], () => this.showsStretch && void this.drawStretch());
+      app2.listen(["report", "steps"], () => void this.drawEnd());
       this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
       this.svg.addEventListener("keydown", (e) => this.key(e));
       this.svg.addEventListener("keyup", (e) => {
         if (e.key === "Tab" && this.focusedHandle) this.panTo(this.focusedHandle);
       });
       this.svg.addEventListener("pointermove", (e) => {
-        if (this.picks) this.light(this.named(e, this.pickable));
-        else if (this.modes.picksParts) this.light(this.named(e, ".art *"));
+        if (this.onPick) this.outlinePath(this.pathAt(e, this.pickSelector));
+        else if (this.modes.picksParts) this.outlinePath(this.pathAt(e, ".art *"));
       });
-      new ResizeObserver(() => this.resized()).observe(this.svg);
+      new ResizeObserver(() => this.isFitted || this.awaitsPicture ? this.fit() : this.layout()).observe(this.svg);
     }
     app;
     modes;
@@ -2978,6 +2971,7 @@
     /** The result of all steps, behind the picture of fewer steps. */
     aheadArt = s("g", { class: "ahead" });
     heat = s("g", { class: "heat" });
+    /** Nodes of the picture's paths, and the lines to their control points. */
     nodes = s("path", { class: "nodes" });
     arms = s("path", { class: "arms" });
     /** Receives pointer events, so that the browser need not search the shapes of a large drawing. */
@@ -2985,35 +2979,35 @@
     selection = new Selection();
     /** The frame that selects points. */
     marquee = s("rect", { class: "marquee", visibility: "hidden" });
-    lit = s("path", { class: "lit" });
+    /** Outline of the path under the pointer. */
+    highlight = s("path", { class: "lit" });
     /** Outlines of the parts that are selected, or pointed at in the list. */
-    chosen = s("g", { class: "chosen-parts" });
-    litParts = [];
-    /** The names of hidden parts. */
-    away = /* @__PURE__ */ new Set();
+    partOutlines = s("g", { class: "chosen-parts" });
+    outlinedParts = [];
+    hiddenParts = /* @__PURE__ */ new Set();
     /** The layer for lines that are being drawn. */
     overlay = s("g", {});
     guides = s("g", { class: "guides" });
-    marks = s("g", { class: "marks" });
+    foldMarks = s("g", { class: "marks" });
     knobs = s("g", { class: "knobs" });
     /** The value of the dragged handle. */
     value = s("text", { class: "value-of-drag" });
     drawing = new Drawing(this.art);
-    elements = /* @__PURE__ */ new Map();
+    /** The knobs of handles, by their keys. */
+    knobOf = /* @__PURE__ */ new Map();
     lines = [];
     /** Wide, invisible lines over draggable ones, by index. */
-    reaches = [];
-    focused = null;
+    hitLines = [];
+    focusedKey = null;
     /** `true` while the view shows the whole page, unmoved by the user. */
     isFitted = false;
     /** `true` until the first picture of a drawing arrives. */
-    isFresh = true;
-    /** The name of the drawing on show. */
-    shown = "";
-    /** `true` until the handles of the first picture arrive. */
-    isToFit = false;
+    awaitsPicture = true;
+    drawingName = "";
+    /** `true` from the first picture of a drawing until its handles arrive. */
+    awaitsHandles = false;
     /** The page of the last picture when saved; null for the drawing's page. */
-    grown = null;
+    savedPage = null;
     /** `true` while the page shows the drawing without steps. */
     isBefore = false;
     showsNodes = false;
@@ -3022,12 +3016,12 @@
     /** The deformation whose handles are highlighted. */
     greeted = "";
     /** The time that the last faint result took, in ms. */
-    endTook = 0;
-    /** If set, receives the next clicked path that a selector matches, and the clicked point; other reactions are disabled. */
-    picks = null;
-    pickable = "";
-    /** Removes the request for a path. */
-    answered = () => {
+    endTime = 0;
+    /** If set, receives the next clicked path that `pickSelector` matches, and the clicked point; other reactions are disabled. */
+    onPick = null;
+    pickSelector = "";
+    /** Removes the message that asks for a path. */
+    hideRequest = () => {
     };
     /** Returns further points that Fit shows, in px of the drawing. */
     around = () => [];
@@ -3042,33 +3036,26 @@
     onKeys = () => {
     };
     onLayout = [];
-    get size() {
-      return [this.svg.clientWidth, this.svg.clientHeight];
-    }
-    resized() {
-      if (this.isFitted || this.isFresh) this.fit();
-      else this.layout();
-    }
-    /** The part of the canvas that neither panels of a narrow window nor hints and tools cover, as two corners. */
+    /** The part of the canvas that neither panels of a narrow window nor hints and tools cover. */
     get view() {
-      const [width, height] = this.size;
+      const { clientWidth: width, clientHeight: height } = this.svg;
       const panel = document.querySelector("body.shapes-open nav, body.settings-open aside");
       if (!panel || getComputedStyle(panel).position === "static") {
-        const [side, up, down] = [Math.min(MARGIN2, width / 10), byId("note").offsetHeight, byId("tools").offsetHeight];
-        return [side, Math.max(MARGIN2, up + BESIDE), width - side, Math.max(height - Math.max(MARGIN2, down + BESIDE), height / 2)];
+        const [side, hint, tools] = [Math.min(MARGIN, width / 10), byId("note").offsetHeight, byId("tools").offsetHeight];
+        return [side, Math.max(MARGIN, hint + TOOLS_GAP), width - side, Math.max(height - Math.max(MARGIN, tools + TOOLS_GAP), height / 2)];
       }
-      const { left, width: over } = panel.getBoundingClientRect();
-      if (over >= width) return [SHEET_MARGIN, SHEET_MARGIN, width - SHEET_MARGIN, Math.max(height - panel.clientHeight, height / 4) - SHEET_MARGIN];
-      return [(left > 0 ? 0 : over) + SHEET_MARGIN, SHEET_MARGIN, (left > 0 ? width - over : width) - SHEET_MARGIN, height - SHEET_MARGIN];
+      const { left, width: covered } = panel.getBoundingClientRect();
+      if (covered >= width) return [NARROW_MARGIN, NARROW_MARGIN, width - NARROW_MARGIN, Math.max(height - panel.clientHeight, height / 4) - NARROW_MARGIN];
+      return [(left > 0 ? 0 : covered) + NARROW_MARGIN, NARROW_MARGIN, (left > 0 ? width - covered : width) - NARROW_MARGIN, height - NARROW_MARGIN];
     }
     /** Shows the whole page and all handles. */
     fit() {
       const [x0, y0, x1, y1] = this.view;
       if (!this.app.state || x1 <= x0 || y1 <= y0) return;
       const handles = (this.app.handles?.handles ?? []).map((h2) => this.camera.inPx(h2.get())).filter((p) => p.every(Number.isFinite));
-      const [a, b, c, d] = this.pageBox;
-      const all = [[a, b], [c, d], ...handles, ...this.around()];
-      const [xs, ys] = [all.map((p) => p[0]), all.map((p) => p[1])];
+      const [left, top, right, bottom] = this.pageBox;
+      const points = [[left, top], [right, bottom], ...handles, ...this.around()];
+      const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
       this.camera.fit([Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)], [x1 - x0, y1 - y0]);
       const [x, y] = this.camera.shift;
       this.camera.shift = [x + x0, y + y0];
@@ -3100,44 +3087,48 @@
       this.isFitted = false;
       this.layout();
     }
-    place() {
+    takeState() {
       const { state } = this.app;
       if (!state) return;
-      if (state.drawing !== this.shown) this.forget();
-      this.shown = state.drawing;
+      if (state.drawing !== this.drawingName) {
+        this.beforeArt.replaceChildren();
+        this.awaitsPicture = true;
+        this.savedPage = null;
+      }
+      this.drawingName = state.drawing;
       const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
       this.camera.toPx = state.toPx;
-      if (isNew || this.isFresh) {
-        this.isFresh = true;
+      if (isNew || this.awaitsPicture) {
+        this.awaitsPicture = true;
         this.fit();
       }
-      this.grow();
+      this.resizeSheet();
     }
-    show(answer) {
+    showAnswer(answer) {
       if (answer.picture) {
         this.drawing.show(answer.picture);
-        if ("whole" in answer.picture && this.away.size > 0) this.hideParts(this.away);
-        this.grown = answer.page;
-        this.grow();
+        if ("whole" in answer.picture && this.hiddenParts.size > 0) this.hideParts(this.hiddenParts);
+        this.savedPage = answer.page;
+        this.resizeSheet();
       }
-      if (answer.summary && this.isFresh) {
-        this.isFresh = false;
-        this.isToFit = this.isFitted;
+      if (answer.summary && this.awaitsPicture) {
+        this.awaitsPicture = false;
+        this.awaitsHandles = this.isFitted;
       }
       if (this.showsNodes) this.drawNodes();
-      if (this.litParts.length > 0) this.lightParts(this.litParts);
-      this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
+      if (this.outlinedParts.length > 0) this.outlineParts(this.outlinedParts);
+      this.foldMarks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.foldMark(at)));
     }
-    /** The page when saved, as two corners in px of the drawing. */
+    /** The page when saved, in px of the drawing. */
     get pageBox() {
       const { state } = this.app;
       if (!state) return [0, 0, 0, 0];
-      const [x, y, w, h2] = this.grown ?? state.page;
+      const [x, y, w, h2] = this.savedPage ?? state.page;
       const [[ax, ay], [bx, by]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h2])];
       return [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
     }
     /** Resizes the sheet to the page. */
-    grow() {
+    resizeSheet() {
       const [x0, y0, x1, y1] = this.pageBox;
       for (const sheet of [...this.shadows, this.sheet]) {
         sheet.setAttribute("x", String(x0));
@@ -3146,29 +3137,23 @@
         sheet.setAttribute("height", String(y1 - y0));
       }
     }
-    fold(at) {
+    foldMark(at) {
       const [x, y] = this.camera.toScreen(at);
       const mark = s("g", { class: "fold", transform: `translate(${x} ${y})` }, s("circle", { r: 9 }), s("circle", { r: 2.5 }));
       mark.dataset.at = JSON.stringify(at);
       return mark;
     }
     /** Shows the drawing without steps, or with them. */
-    async before(on2) {
+    async showBefore(on2) {
       if (on2 === this.isBefore) return;
       this.isBefore = on2;
       if (on2 && this.beforeArt.childElementCount === 0) {
-        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "before" }));
+        const answer = await this.app.request({ do: "before" });
         this.beforeArt.replaceChildren(...Array.from(apart(answer?.svg, "before")?.children ?? []));
       }
       this.svg.classList.toggle("before", this.isBefore);
       this.art.setAttribute("visibility", this.isBefore ? "hidden" : "visible");
       this.beforeArt.setAttribute("visibility", this.isBefore ? "visible" : "hidden");
-    }
-    /** Prepares for another drawing. */
-    forget() {
-      this.beforeArt.replaceChildren();
-      this.isFresh = true;
-      this.grown = null;
     }
     drawNodes() {
       const { nodes, arms } = this.showsNodes ? nodesOf(this.drawing.paths()) : { nodes: "", arms: "" };
@@ -3177,8 +3162,7 @@
     }
     /** Shows or hides the stretch of the visible steps. */
     drawStretch = latest(async () => {
-      const { app: app2 } = this;
-      const answer = this.showsStretch ? await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible })) : null;
+      const answer = this.showsStretch ? await this.app.request({ do: "stretch", steps: this.app.visible }) : null;
       const stretch = this.showsStretch ? answer?.stretch : null;
       this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
     });
@@ -3186,11 +3170,11 @@
     drawEnd = latest(async () => {
       const { app: app2 } = this;
       const isEarlier = () => this.showsEnd && app2.selected < app2.steps.length - 1;
-      const draft = app2.isDragging ? DRAFT_OF_END * this.camera.pixel : null;
-      if (draft !== null && this.endTook > MOST_OF_END) return;
+      const draft = app2.isDragging ? END_TOLERANCE * this.camera.pixel : null;
+      if (draft !== null && this.endTime > END_TIME_LIMIT) return;
       const start = performance.now();
       const answer = isEarlier() ? await app2.connection.ask({ do: "ahead", steps: app2.steps, draft }).catch(() => null) : null;
-      if (answer) this.endTook = performance.now() - start;
+      if (answer) this.endTime = performance.now() - start;
       this.aheadArt.replaceChildren(...Array.from(apart(isEarlier() ? answer?.svg : void 0, "ahead")?.children ?? []));
     });
     /** Positions everything on the screen. */
@@ -3199,31 +3183,30 @@
       const layers = [...this.shadows, this.sheet, this.behind, this.aheadArt, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
       for (const layer of layers) layer.setAttribute("transform", camera.transform);
       this.checks.setAttribute("patternTransform", `scale(${1 / camera.scale})`);
-      for (const mark of Array.from(this.marks.children)) {
+      for (const mark of Array.from(this.foldMarks.children)) {
         const [x, y] = camera.toScreen(JSON.parse(mark.dataset.at));
         mark.setAttribute("transform", `translate(${x} ${y})`);
       }
       this.placeHandles();
-      if (this.litParts.length > 0) this.lightParts(this.litParts);
+      if (this.outlinedParts.length > 0) this.outlineParts(this.outlinedParts);
       for (const follow of this.onLayout) follow();
     }
     /** Positions handles and their lines. */
     placeHandles() {
       const { handles } = this.app;
       if (!handles) return;
-      const at = (p) => this.camera.toScreen(p).map((v) => v.toFixed(2)).join(",");
+      const screenPoint = (p) => this.camera.toScreen(p).map((v) => v.toFixed(2)).join(",");
       handles.lines().forEach((line, i) => {
         const element = this.lines[i];
         if (!element) return;
-        const [first, ...rest] = line.points.map(at);
-        const close = line.closed ? "Z" : "";
-        const d = line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`;
+        const [first, ...rest] = line.points.map(screenPoint);
+        const d = `M${first}${line.cubic ? "C" : "L"}${rest.join(" ")}${line.closed ? "Z" : ""}`;
         element.setAttribute("d", d);
-        this.reaches[i]?.setAttribute("d", d);
+        this.hitLines[i]?.setAttribute("d", d);
       });
       for (const handle of handles.handles) {
         const [x, y] = this.camera.toScreen(handle.get());
-        this.elements.get(handle.key)?.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
+        this.knobOf.get(handle.key)?.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
       }
       this.selection.place(this.app.isDragging && this.app.hold ? null : handles, (p) => this.camera.toScreen(p));
     }
@@ -3234,10 +3217,10 @@
     rebuild() {
       const { handles } = this.app;
       this.svg.classList.toggle("selecting", this.selects);
-      this.elements.clear();
+      this.knobOf.clear();
       const lines = handles?.lines() ?? [];
       this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
-      this.reaches = lines.map((line) => line.kind === "arm" ? null : s("path", { class: "pull" }));
+      this.hitLines = lines.map((line) => line.kind === "arm" ? null : s("path", { class: "pull" }));
       const knobs = (handles?.handles ?? []).map((handle) => {
         const body = handle.shape === "control" ? s("rect", { x: -4, y: -4, width: 8, height: 8, rx: 1.5, class: "body" }) : s("circle", { r: handle.shape === "source" ? 5 : 6.5, class: "body" });
         const knob = s(
@@ -3250,38 +3233,38 @@
           if (!this.selection.keys.has(handle.key)) this.selection.take([handle.key]);
           this.focus(handle.key);
         });
-        this.elements.set(handle.key, knob);
+        this.knobOf.set(handle.key, knob);
         return knob;
       });
-      this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
-      const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
+      this.guides.replaceChildren(...this.lines, ...this.hitLines.filter((r) => r !== null));
+      const hadFocus = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
       this.greet();
       this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
       this.placeHandles();
-      if (this.isToFit && handles) {
-        this.isToFit = false;
+      if (this.awaitsHandles && handles) {
+        this.awaitsHandles = false;
         queueMicrotask(() => this.reveal());
       }
-      if (this.focused) {
-        const again = this.elements.get(this.focused);
-        if (!again) this.focus(null);
-        else if (had) again.focus({ preventScroll: true });
-        else this.focus(this.focused);
+      if (this.focusedKey) {
+        const knob = this.knobOf.get(this.focusedKey);
+        if (!knob) this.focus(null);
+        else if (hadFocus) knob.focus({ preventScroll: true });
+        else this.focus(this.focusedKey);
       }
     }
     /** Highlights handles the first time that a deformation has some here. */
     greet() {
-      const [name, known] = [this.app.step?.deformation, new Set((localStorage.getItem(GREETED) ?? "").split(" "))];
+      const [name, known] = [this.app.step?.deformation, new Set((localStorage.getItem(GREETED_KEY) ?? "").split(" "))];
       this.knobs.classList.toggle("greeting", name !== void 0 && (name === this.greeted || !known.has(name)));
       if (!name || !this.app.handles || known.has(name)) return;
       this.greeted = name;
-      localStorage.setItem(GREETED, [...known, name].join(" ").trim());
+      localStorage.setItem(GREETED_KEY, [...known, name].join(" ").trim());
     }
-    /** Selects a handle. */
+    /** Makes a handle the one whose position is shown; null also clears the selection. */
     focus(key) {
-      this.focused = key;
+      this.focusedKey = key;
       if (key === null) this.selection.take([]);
-      for (const [k, element] of this.elements) element.classList.toggle("selected", k === key || this.selection.keys.has(k));
+      for (const [k, knob] of this.knobOf) knob.classList.toggle("selected", k === key || this.selection.keys.has(k));
       this.selection.place(this.app.handles, (p) => this.camera.toScreen(p));
       this.onFocus(this.handle(key));
     }
@@ -3290,15 +3273,15 @@
       this.selection.take(keys);
       const last = keys[keys.length - 1] ?? null;
       this.focus(last);
-      if (last) this.elements.get(last)?.focus({ preventScroll: true });
+      if (last) this.knobOf.get(last)?.focus({ preventScroll: true });
     }
     /** Returns the selected points if a handle is one of several. */
-    several(handle) {
+    selectedWith(handle) {
       const { handles } = this.app;
       return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.of(handles) : null;
     }
-    /** Returns the points in a frame between two points of the screen: nodes, or else control points. */
-    within([ax, ay], [bx, by]) {
+    /** Returns the keys of the points in a frame between two points of the screen: nodes, or else control points. */
+    keysInFrame([ax, ay], [bx, by]) {
       const inside = (this.app.handles?.handles ?? []).filter((h2) => {
         const [x, y] = this.camera.toScreen(h2.get());
         return (x - ax) * (x - bx) <= 0 && (y - ay) * (y - by) <= 0;
@@ -3307,7 +3290,7 @@
       return (nodes.length > 0 ? nodes : inside).map(({ key }) => key);
     }
     get focusedHandle() {
-      return this.handle(this.focused);
+      return this.handle(this.focusedKey);
     }
     handle(key) {
       return this.app.handles?.handles.find((h2) => h2.key === key) ?? null;
@@ -3317,93 +3300,93 @@
       const box = this.svg.getBoundingClientRect();
       return [e.clientX - box.left, e.clientY - box.top];
     }
-    /** Lets the next click pick a path among those that a selector matches; the request is shown until then. */
-    pick(take, among = ".art [id]", wish = "") {
-      [this.picks, this.pickable] = [take, among];
+    /** Lets the next click pick a path among those that a selector matches; `request`, if any, is shown until then. */
+    pick(take, selector = ".art [id]", request = "") {
+      [this.onPick, this.pickSelector] = [take, selector];
       this.svg.classList.toggle("picking", take !== null || this.modes.picksParts);
-      this.svg.classList.toggle("outlining", take !== null && among !== ".art [id]");
-      this.light(null);
-      this.answered();
-      this.answered = take && wish ? toast(wish, true) : () => {
+      this.svg.classList.toggle("outlining", take !== null && selector !== ".art [id]");
+      this.outlinePath(null);
+      this.hideRequest();
+      this.hideRequest = take && request ? toast(request, true) : () => {
       };
     }
     /** Picks the clicked path; elsewhere, the request stays. */
-    picked(e) {
-      const named = this.named(e, this.pickable);
-      if (!named) return void toast("No path is there. Click one, or press Escape");
-      const take = this.picks;
+    pickAt(e) {
+      const path = this.pathAt(e, this.pickSelector);
+      if (!path) return void toast("No path is there. Click one, or press Escape");
+      const take = this.onPick;
       this.pick(null);
-      take?.(named, this.camera.toUser(this.point(e)));
+      take?.(path, this.camera.toUser(this.point(e)));
     }
-    /** Reports the clicked part. */
-    pickedPart(e) {
+    /** Reports the innermost part at the pointer, or the outermost copy that contains it; a copy is one part, whatever its content. */
+    pickPartAt(e) {
       let name = null;
-      for (let at = this.named(e, ".art *"); at && !at.matches(".art"); at = at.parentElement) {
-        const own = partOf(at.id);
-        if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
+      for (let element = this.pathAt(e, ".art *"); element && !element.matches(".art"); element = element.parentElement) {
+        const part = partOf(element.id);
+        if (this.parts.has(part) && (name === null || part.startsWith("use at") || element.localName === "use")) name = part;
       }
-      this.light(null);
+      this.outlinePath(null);
       if (name !== null || !this.isHiddenAt(e)) this.onPart(name, e.shiftKey);
     }
     /** Returns `true` if a hidden part is at the pointer. */
     isHiddenAt(e) {
-      const { away } = this;
+      const { hiddenParts } = this;
       this.hideParts(/* @__PURE__ */ new Set());
-      const isThere = this.named(e, ".art *") !== null;
-      this.hideParts(away);
+      const isThere = this.pathAt(e, ".art *") !== null;
+      this.hideParts(hiddenParts);
       return isThere;
     }
     /** Returns the elements of parts in the picture. */
-    ofParts(names) {
-      const all = names.size > 0 ? Array.from(this.art.querySelectorAll("[id]")) : [];
-      return all.filter(({ id }) => names.has(partOf(id)));
+    elementsOf(parts) {
+      const all = parts.size > 0 ? Array.from(this.art.querySelectorAll("[id]")) : [];
+      return all.filter(({ id }) => parts.has(partOf(id)));
     }
     /** Draws the outlines of parts. */
-    lightParts(names) {
-      this.litParts = names;
-      const outlines = this.ofParts(new Set(names)).flatMap((e) => e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path")));
-      this.chosen.replaceChildren(...outlines.map((path) => outlineOf(path, this.svg, s("path", { class: "lit" }))));
+    outlineParts(names) {
+      this.outlinedParts = names;
+      const paths = this.elementsOf(new Set(names)).flatMap((e) => e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path")));
+      this.partOutlines.replaceChildren(...paths.map((path) => outlineOf(path, this.svg, s("path", { class: "lit" }))));
     }
     /** Hides parts in the picture. */
     hideParts(names) {
-      this.away = names;
+      this.hiddenParts = names;
       for (const e of Array.from(this.art.querySelectorAll(".away"))) e.classList.remove("away");
-      for (const e of this.ofParts(names)) e.classList.add("away");
+      for (const e of this.elementsOf(names)) e.classList.add("away");
     }
-    /** Returns the path nearest to the pointer among those that the selector matches. */
-    named(e, which) {
-      for (let r = 0; r <= PICKED; r += 2) {
+    /** Returns the path nearest to the pointer among those that a selector matches, tried on circles around it. */
+    pathAt(e, selector) {
+      for (let r = 0; r <= PICK_REACH; r += 2) {
         for (let k = 0; k < (r === 0 ? 1 : 4 * r); k++) {
-          const a = 2 * Math.PI * k / (4 * r || 1);
-          const there = document.elementFromPoint(e.clientX + r * Math.cos(a), e.clientY + r * Math.sin(a));
-          if (there instanceof SVGGraphicsElement && there.closest(which)) return there;
+          const angle = 2 * Math.PI * k / (4 * r || 1);
+          const path = document.elementFromPoint(e.clientX + r * Math.cos(angle), e.clientY + r * Math.sin(angle));
+          if (path instanceof SVGGraphicsElement && path.closest(selector)) return path;
         }
       }
       return null;
     }
-    /** Highlights a path. */
-    light(path) {
-      if (path) outlineOf(path, this.svg, this.lit);
-      else this.lit.setAttribute("d", "");
+    /** Draws the outline of a path under the pointer; null removes it. */
+    outlinePath(path) {
+      if (path) outlineOf(path, this.svg, this.highlight);
+      else this.highlight.setAttribute("d", "");
     }
     /** Shows the value of the dragged handle beside it; null hides it. */
-    tell(handle) {
+    showValue(handle) {
       const { step: step2 } = this.app;
       const param = this.app.deformation(step2?.deformation)?.params.find(({ name }) => name === handle?.param);
       const isNumber = param && ["number", "length", "angle", "count"].includes(param.kind);
       const [x, y] = handle?.get() ?? [0, 0];
       const digits = Math.max(0, Math.ceil(-Math.log10(this.camera.pixel)));
-      const place2 = [x, y].map((v) => v.toFixed(digits)).join(", ");
-      this.value.textContent = !handle ? "" : isNumber ? `${paramName(param)} ${step2?.args[param.name]?.[0] ?? ""}${param.kind === "angle" ? "°" : ""}` : place2;
+      const position = [x, y].map((v) => v.toFixed(digits)).join(", ");
+      this.value.textContent = !handle ? "" : isNumber ? `${paramName(param)} ${step2?.args[param.name]?.[0] ?? ""}${param.kind === "angle" ? "°" : ""}` : position;
       const [sx, sy] = this.camera.toScreen([x, y]);
       this.value.setAttribute("x", String(sx + REACH));
       this.value.setAttribute("y", String(sy - REACH));
     }
     /** Writes the values of a moved handle, and requests a draft. */
-    changed(handle, since) {
+    writeHandle(handle, since) {
       this.app.handles.write(handle.param);
       this.placeHandles();
-      if (this.app.hold) this.tell(handle);
+      if (this.app.hold) this.showValue(handle);
       this.onFocus(handle);
       this.app.tell("values");
       this.app.draft(since);
@@ -3423,18 +3406,20 @@
     key(e) {
       const handle = this.handle(e.target.closest(".knob")?.dataset.key ?? null);
       if (!handle || !this.app.handles) return;
-      const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
-      if (by) {
+      const direction = ARROWS[e.key];
+      const several = this.selectedWith(handle);
+      if (direction) {
         e.preventDefault();
-        const far = e.shiftKey ? 10 : 1;
-        const [x, y] = this.camera.toScreen(handle.get());
-        const several = this.several(handle);
+        const px = e.shiftKey ? 10 : 1;
+        const shifted = (p) => {
+          const [x, y] = this.camera.toScreen(p);
+          return this.camera.toUser([x + px * direction[0], y + px * direction[1]]);
+        };
         if (several) {
           this.app.commitSoon();
-          const shift = ([px, py]) => [px + far * by[0], py + far * by[1]];
-          this.changedAll(together(this.app.handles, several, this.modes)((p) => this.camera.toUser(shift(this.camera.toScreen(p)))), performance.now());
+          this.writeParams(together(this.app.handles, several, this.modes)(shifted), performance.now());
         } else {
-          this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+          this.moveTo(handle, shifted(handle.get()));
         }
         this.onKeys(handle);
       } else if (e.key === "Insert") {
@@ -3444,7 +3429,6 @@
         void this.add(at);
       } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
         e.preventDefault();
-        const several = this.several(handle);
         if (several) this.removeAll(several);
         else this.remove(handle);
       }
@@ -3453,37 +3437,32 @@
     removeAll(several) {
       const { handles } = this.app;
       if (!handles) return;
-      const places = several.map(({ param, shape, get }) => ({ param, shape, at: [...get()] }));
-      for (const { param, shape, at } of places) {
-        handles.handles.find((h2) => h2.param === param && h2.shape === shape && h2.get()[0] === at[0] && h2.get()[1] === at[1])?.remove?.();
+      const points = several.map((handle) => ({ handle, at: [...handle.get()] }));
+      for (const { handle, at: [x, y] } of points) {
+        const { param, shape } = handle;
+        const present = handles.handles.includes(handle) ? handle : handles.handles.find((h2) => h2.param === param && h2.shape === shape && h2.get()[0] === x && h2.get()[1] === y);
+        present?.remove?.();
         handles.write(param);
       }
-      this.focused = handles.nearest(places[0].at)?.key ?? null;
-      this.selection.take(this.focused ? [this.focused] : []);
+      this.focusedKey = handles.nearest(points[0].at)?.key ?? null;
+      this.selection.take(this.focusedKey ? [this.focusedKey] : []);
       this.app.tell("handles");
       void this.app.commit();
     }
     /** Writes the values of parameters whose handles have moved together, and requests a draft. */
-    changedAll(params, since) {
+    writeParams(params, since) {
       for (const param of params) this.app.handles.write(param);
       this.placeHandles();
       this.onFocus(this.focusedHandle);
       this.app.tell("values");
       this.app.draft(since);
     }
-    /** Removes a point. */
+    /** Removes a point, and its reflection if symmetry is on. */
     remove(handle) {
       const { handles } = this.app;
       if (!handle.remove || !handles) return;
-      const [at, param] = [handle.get(), handle.param];
-      const partner = this.modes.mirrors && !handles.isRows(param) ? handles.partner(handle) : null;
-      const mirrored = partner?.param === param ? partner.get() : null;
-      handle.remove();
-      if (mirrored) handles.handles.find((h2) => h2.param === param && h2.shape === handle.shape && h2.get()[0] === mirrored[0] && h2.get()[1] === mirrored[1])?.remove?.();
-      handles.write(param);
-      this.focused = handles.nearest(at)?.key ?? null;
-      this.app.tell("handles");
-      void this.app.commit();
+      const partner = this.modes.mirrors && !handles.isRows(handle.param) ? handles.partner(handle) : null;
+      this.removeAll(partner ? [handle, partner] : [handle]);
     }
     /** Moves a handle by keys or typed numbers. */
     moveTo(handle, to) {
@@ -3491,39 +3470,39 @@
       if (!handles) return;
       this.app.commitSoon();
       this.modes.mover(handles, handle)(to, null);
-      this.changed(handle, performance.now());
+      this.writeHandle(handle, performance.now());
     }
   };
   function latest(work) {
-    let [isAsked, isWanted] = [false, false];
+    let [isRunning, isRequested] = [false, false];
     return async () => {
-      isWanted = true;
-      if (isAsked) return;
-      isAsked = true;
-      while (isWanted) {
-        isWanted = false;
+      isRequested = true;
+      if (isRunning) return;
+      isRunning = true;
+      while (isRequested) {
+        isRequested = false;
         await work();
       }
-      isAsked = false;
+      isRunning = false;
     };
   }
   function partOf(id) {
     return id.replace(/^art-/, "");
   }
-  var FARTHEST = 1e6;
-  function outlineOf(path, svg, to) {
-    const [from, m] = [svg.getBoundingClientRect(), path.getScreenCTM()];
+  var LARGEST_OUTLINE = 1e6;
+  function outlineOf(path, svg, outline) {
+    const [canvas, m] = [svg.getBoundingClientRect(), path.getScreenCTM()];
     const { width, height } = path.getBBox();
-    const isFar = m !== null && Math.hypot(width, height) * Math.hypot(m.a, m.b) > FARTHEST;
-    to.setAttribute("d", isFar ? "" : path.getAttribute("d") ?? "");
-    if (m) to.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
-    return to;
+    const isTooLarge = m !== null && Math.hypot(width, height) * Math.hypot(m.a, m.b) > LARGEST_OUTLINE;
+    outline.setAttribute("d", isTooLarge ? "" : path.getAttribute("d") ?? "");
+    if (m) outline.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - canvas.x} ${m.f - canvas.y})`);
+    return outline;
   }
 
   // src/pointing.ts
   var MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
   var SNAP = 7;
-  var SHAKES = 3;
+  var CLICK_DISTANCE = 3;
   var NOTCH2 = 50;
   var PINCH_RATE = 0.01;
   var WHEEL_RATE = 2e-3;
@@ -3540,8 +3519,8 @@
           if (this.down.has(pointerId)) this.down.set(pointerId, stage2.point(e));
         });
       }
-      app2.listen((change) => {
-        if (change === "link" && !app2.isLive) this.finish?.();
+      app2.listen(["link"], () => {
+        if (!app2.isLive) this.finish?.();
       });
       for (const end2 of ["pointerup", "pointercancel"]) window.addEventListener(end2, (e) => this.down.delete(e.pointerId));
     }
@@ -3567,7 +3546,7 @@
     press(e) {
       const { stage: stage2 } = this;
       const target = e.target;
-      if (stage2.picks) return stage2.picked(e);
+      if (stage2.onPick) return stage2.pickAt(e);
       this.down.set(e.pointerId, stage2.point(e));
       if (this.down.size > 2) return;
       if (this.down.size === 2) {
@@ -3578,33 +3557,32 @@
       const knob = target.closest(".knob");
       const part = target.closest(".part")?.dataset.part;
       if (knob && bends) this.drag(e, knob);
-      else if (this.modes.picksParts && bends) this.pan(e, () => stage2.pickedPart(e));
+      else if (this.modes.picksParts && bends) this.pan(e, () => stage2.pickPartAt(e));
       else if (part && bends) this.transform(e, stage2.selection.transform(part, stage2.point(e)));
-      else if (bends && !e.shiftKey && stage2.selection.holds(stage2.point(e))) this.transform(e, moved(stage2.point(e)), () => stage2.select([]));
+      else if (bends && !e.shiftKey && stage2.selection.holds(stage2.point(e))) this.transform(e, translation(stage2.point(e)), () => stage2.select([]));
       else if (bends && (e.shiftKey || stage2.selects)) this.frame(e);
       else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage2.select([]));
     }
     /** Follows a pointer until it is lifted, Escape is pressed, or a second finger touches. Returns a function that cancels the action. */
     follow(e, { move, end: end2, cancel = end2 }) {
       const stop = new AbortController();
-      const { signal } = stop;
-      const finish = (how) => {
+      const finish = (react) => {
         stop.abort();
         this.finish = null;
-        how();
+        react();
       };
       this.finish = () => finish(end2);
-      const own = (action) => (event) => {
+      const onThisPointer = (action) => (event) => {
         if (event.pointerId === e.pointerId) action(event);
       };
-      window.addEventListener(MOVES, own((event) => move(this.stage.point(event), event)), { signal });
-      for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, own(() => finish(end2)), { signal });
+      window.addEventListener(MOVES, onThisPointer((event) => move(this.stage.point(event), event)), stop);
+      for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, onThisPointer(() => finish(end2)), stop);
       window.addEventListener("keydown", (event) => {
         if (event.key === "Escape") finish(cancel);
-      }, { signal });
+      }, stop);
       return () => finish(cancel);
     }
-    /** Follows a pointer that changes the step by `move`; `done` cleans up. */
+    /** Follows a pointer that changes the step by `move`; `done` cleans up, and `clicked` reacts to a press without a move. */
     bend(e, move, done, clicked = () => {
     }) {
       const { app: app2 } = this;
@@ -3618,12 +3596,12 @@
       const stop = () => {
         app2.isDragging = false;
         app2.hold = null;
-        this.stage.tell(null);
+        this.stage.showValue(null);
         done();
       };
-      const abandon = this.follow(e, {
+      app2.hold = this.follow(e, {
         move: (to, event) => {
-          hasMoved ||= Math.hypot(to[0] - start[0], to[1] - start[1]) >= SHAKES;
+          hasMoved ||= Math.hypot(to[0] - start[0], to[1] - start[1]) >= CLICK_DISTANCE;
           if (hasMoved) move(to, event);
         },
         end: () => {
@@ -3636,7 +3614,6 @@
           if (hasMoved) app2.cancel(step2, before2);
         }
       });
-      app2.hold = abandon;
     }
     drag(e, knob) {
       const { stage: stage2, modes: modes2 } = this;
@@ -3648,20 +3625,20 @@
       knob.focus({ preventScroll: true });
       if (e.shiftKey) stage2.selection.keys = before2;
       const [x, y] = stage2.point(e);
-      const several = stage2.several(handle);
+      const several = stage2.selectedWith(handle);
       const adds = e.shiftKey;
       const clicked = () => {
         if (adds) stage2.selection.toggle(handle.key);
         stage2.select(adds ? Array.from(stage2.selection.keys) : [handle.key]);
       };
-      if (several && !adds) return this.transform(e, moved([x, y]), clicked);
+      if (several && !adds) return this.transform(e, translation([x, y]), clicked);
       const grabbed = stage2.camera.toScreen(handle.get());
       const mover = modes2.mover(handles, handle);
       knob.classList.add("held");
       this.bend(e, (to, event) => {
         const target = stage2.camera.toUser([grabbed[0] + to[0] - x, grabbed[1] + to[1] - y]);
         mover(modes2.snapped(target, handle, handles, SNAP * stage2.camera.pixel, event), event);
-        stage2.changed(handle, event.timeStamp);
+        stage2.writeHandle(handle, event.timeStamp);
       }, () => {
         knob.classList.remove("held");
         modes2.clear();
@@ -3678,8 +3655,8 @@
       const mover = together(handles, stage2.selection.of(handles), modes2);
       e.preventDefault();
       this.bend(e, (to, event) => {
-        const there = image(to);
-        stage2.changedAll(mover((p) => camera.toUser(there(camera.toScreen(p)))), event.timeStamp);
+        const map = image(to);
+        stage2.writeParams(mover((p) => camera.toUser(map(camera.toScreen(p)))), event.timeStamp);
       }, () => stage2.placeHandles(), clicked);
     }
     /** Draws a frame, and selects the points within. */
@@ -3698,7 +3675,7 @@
         },
         end: () => {
           hide2();
-          stage2.select(Array.from(/* @__PURE__ */ new Set([...before2, ...stage2.within(start, last)])));
+          stage2.select(Array.from(/* @__PURE__ */ new Set([...before2, ...stage2.keysInFrame(start, last)])));
         },
         cancel: hide2
       });
@@ -3711,7 +3688,7 @@
       if (!handles || !pull) return false;
       const [x, y] = stage2.point(e);
       if (pull.ends.length > 1 && pull.ends.every((key) => stage2.selection.keys.has(key))) {
-        this.transform(e, moved([x, y]));
+        this.transform(e, translation([x, y]));
         return true;
       }
       const puller = modes2.puller(handles, pull);
@@ -3725,7 +3702,7 @@
       }, () => stage2.select(pull.ends));
       return true;
     }
-    /** Moves the view; a click does something else. */
+    /** Moves the view; a press without a move calls `clicked` instead. */
     pan(e, clicked) {
       const { stage: stage2 } = this;
       const first = stage2.point(e);
@@ -3740,9 +3717,10 @@
         end: () => {
           stage2.svg.classList.remove("panning");
           const [x, y, w, h2] = this.app.handles?.frame ?? [0, 0, 0, 0];
-          if (Math.hypot(last[0] - first[0], last[1] - first[1]) < SHAKES && this.down.size < 2) clicked();
-          const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h2;
-          if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
+          const distance2 = Math.hypot(last[0] - first[0], last[1] - first[1]);
+          if (distance2 < CLICK_DISTANCE && this.down.size < 2) clicked();
+          const isOnArtwork = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h2;
+          if (isOnArtwork && distance2 > REACH / 4) this.onPan();
         }
       });
     }
@@ -3750,22 +3728,21 @@
     pinch() {
       const [one, two] = Array.from(this.down.keys());
       const stop = new AbortController();
-      const { signal } = stop;
-      const middle2 = () => {
+      const middleAndDistance = () => {
         const [a, b] = [this.down.get(one), this.down.get(two)];
         return [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(a[0] - b[0], a[1] - b[1])];
       };
-      let [at, apart2] = middle2();
+      let [from, distance2] = middleAndDistance();
       window.addEventListener("pointermove", () => {
-        const [to, wide] = middle2();
-        if (apart2 > 0) this.stage.zoom(wide / apart2, at);
-        this.stage.shift([to[0] - at[0], to[1] - at[1]]);
-        [at, apart2] = [to, wide];
-      }, { signal });
-      for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, () => stop.abort(), { signal });
+        const [to, newDistance] = middleAndDistance();
+        if (distance2 > 0) this.stage.zoom(newDistance / distance2, from);
+        this.stage.shift([to[0] - from[0], to[1] - from[1]]);
+        [from, distance2] = [to, newDistance];
+      }, stop);
+      for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, () => stop.abort(), stop);
     }
   };
-  var moved = ([x, y]) => (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y];
+  var translation = ([x, y]) => (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y];
 
   // src/presets.ts
   var Presets = class {
@@ -3815,12 +3792,10 @@
   var Report = class {
     constructor(app2) {
       this.app = app2;
-      app2.listen((change) => {
-        if (change === "report" || change === "state") this.figures();
-        if (change === "state") this.buttons();
-        if (change === "handles" || change === "steps") this.hint();
-        if (change === "link") this.link();
-      });
+      app2.listen(["report", "state"], () => this.figures());
+      app2.listen(["state"], () => this.buttons());
+      app2.listen(["handles", "steps"], () => this.hint());
+      app2.listen(["link"], () => this.link());
       app2.connection.onBusy = (isBusy) => this.busy(isBusy);
       byId("warnings").addEventListener("click", () => toast(app2.warnings.join(" · ")));
     }
@@ -3873,7 +3848,7 @@
       if (app2.appends) return show("note", "Choose the shape of the next step, or press Escape");
       if (app2.steps.length === 0) return show("note", "Choose a shape");
       if (app2.step?.hidden) return show("note", "This step is hidden: it bends nothing. The eye in the list brings it back");
-      if (app2.tooSmall("along") !== null) return show("note", "The artwork is longer than its circle: pull the circle larger, or see the settings");
+      if (app2.leastRadius("along") !== null) return show("note", "The artwork is longer than its circle: pull the circle larger, or see the settings");
       if (!handles) return;
       const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
       const adds = handles.net ? "Double-click a line to add another" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
@@ -3917,12 +3892,12 @@
     ["webp", "WebP", "A picture for the web"],
     ["toml", "Recipe", "For other drawings"]
   ];
-  var PICTURES = ["png", "jpg", "webp"];
-  var WIDTH = 2e3;
-  var WIDEST = 2e4;
-  var REMEMBERED = "pathwarp-export";
+  var PICTURE_EXTENSIONS = ["png", "jpg", "webp"];
+  var USUAL_WIDTH = 2e3;
+  var LARGEST_WIDTH = 2e4;
+  var CHOICES_KEY = "pathwarp-export";
   var NOTHING = "There is nothing to save yet: pull a blue point or choose a shape first";
-  var FETCHED = 6e4;
+  var DOWNLOAD_START = 6e4;
   var Saving = class {
     constructor(app2) {
       this.app = app2;
@@ -3932,7 +3907,7 @@
         input.addEventListener("change", () => this.choose(extension));
         formats.append(h("label", { class: "format" }, input, h("span", {}, h("b", {}, title), h("small", {}, use))));
       }
-      byId("save").addEventListener("click", () => void this.quick());
+      byId("save").addEventListener("click", () => void this.save());
       byId("save-as").addEventListener("click", () => void this.open());
       byId("save-cancel").addEventListener("click", () => this.dialog.close());
       this.dialog.querySelector("form").addEventListener("submit", (e) => {
@@ -3940,15 +3915,13 @@
         void this.write(false);
       });
       this.replace.addEventListener("click", () => void this.write(true));
-      this.download.addEventListener("click", () => void this.fetch());
+      this.download.addEventListener("click", () => void this.downloadFile());
       for (const field of [this.name, this.folder, this.size]) field.addEventListener("input", () => this.say(""));
       this.background.addEventListener("change", () => this.colour.hidden = this.background.value !== "colour");
-      this.unit.addEventListener("change", () => this.size.value = this.unit.value === "%" ? "100" : String(WIDTH));
+      this.unit.addEventListener("change", () => this.size.value = this.unit.value === "%" ? "100" : String(USUAL_WIDTH));
       this.recall();
       byId("copy-command").addEventListener("click", () => void this.copyCommand());
-      app2.listen((change) => {
-        if (change === "state") this.show();
-      });
+      app2.listen(["state"], () => this.show());
     }
     app;
     dialog = byId("save-dialog");
@@ -3963,8 +3936,8 @@
     background = byId("save-background");
     colour = byId("save-colour");
     /** The photograph for which the dialog last offered the full size, 100 %; empty for other drawings. */
-    offered = "";
-    /** The steps downloaded last. */
+    photographOffered = "";
+    /** The steps downloaded last, as JSON. */
     downloaded = "";
     show() {
       const { state } = this.app;
@@ -3992,22 +3965,22 @@
     }
     /** Hands the steps to the program that waits for them. */
     async handOver() {
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "hand-over" }));
+      const answer = await this.app.request({ do: "hand-over" });
       if (!answer?.done) return;
       this.app.finish();
       window.close();
     }
     /** Saves to the file saved last or, the first time, to the usual one. */
-    async quick() {
+    async save() {
       if (this.dialog.open) return this.write(false);
       if (!await this.app.settle()) return;
       const { state } = this.app;
       if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
       if (!state) return;
       if (state.steps.length === 0) return this.open();
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
+      const answer = await this.app.request({ do: "save", name: null, replace: false });
       if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
-      if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
+      if (answer?.written) this.reportSaved(answer.written, answer.state, answer.warnings ?? []);
     }
     /** Opens the dialog for a name, with the reason if nothing could be written. */
     async open(unwritable = "") {
@@ -4018,8 +3991,8 @@
       this.name.value = state.target;
       this.choose("svg");
       if (!state.photograph) this.recall();
-      else if (this.offered !== state.drawing) [this.unit.value, this.size.value] = ["%", "100"];
-      this.offered = state.photograph ? state.drawing : "";
+      else if (this.photographOffered !== state.drawing) [this.unit.value, this.size.value] = ["%", "100"];
+      this.photographOffered = state.photograph ? state.drawing : "";
       this.folder.value = state.savedIn ?? state.folder;
       if (unwritable) this.refuse(unwritable);
       this.dialog.showModal();
@@ -4027,7 +4000,7 @@
     }
     /** Restores the choices made last. */
     recall() {
-      const { unit = "px", size = WIDTH, background: background2 = "none" } = JSON.parse(localStorage.getItem(REMEMBERED) ?? "{}");
+      const { unit = "px", size = USUAL_WIDTH, background: background2 = "none" } = JSON.parse(localStorage.getItem(CHOICES_KEY) ?? "{}");
       const isColour = background2.startsWith("#");
       [this.unit.value, this.size.value, this.background.value] = [unit, String(size), isColour ? "colour" : background2];
       if (isColour) this.colour.value = background2;
@@ -4036,15 +4009,15 @@
     /** Returns the file in the dialog; `null` for a picture without a size. */
     target() {
       const [name, folder] = [this.name.value, this.folder.value];
-      if (!PICTURES.includes(this.extension)) return { name, folder };
+      if (!PICTURE_EXTENSIONS.includes(this.extension)) return { name, folder };
       const unit = this.unit.value === "%" ? "%" : "px";
       const size = inUnits(this.size.value, unit) ?? NaN;
-      if (!(size > 0 && size <= WIDEST) || unit === "px" && !Number.isInteger(size)) {
-        this.say(unit === "%" ? "The size is a number of per cent, such as 200" : `The width is a whole number of pixels up to ${WIDEST}`);
+      if (!(size > 0 && size <= LARGEST_WIDTH) || unit === "px" && !Number.isInteger(size)) {
+        this.say(unit === "%" ? "The size is a number of per cent, such as 200" : `The width is a whole number of pixels up to ${LARGEST_WIDTH}`);
         return null;
       }
       const background2 = this.background.value === "colour" ? this.colour.value : this.background.value;
-      if (!this.offered) localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background: background2 }));
+      if (!this.photographOffered) localStorage.setItem(CHOICES_KEY, JSON.stringify({ unit, size, background: background2 }));
       const picture = { ...unit === "%" ? { scale: size / 100 } : { width: size }, background: background2 === "none" ? null : background2 };
       return { name, folder, picture };
     }
@@ -4054,7 +4027,7 @@
       for (const input of Array.from(this.dialog.querySelectorAll("input[type=radio]"))) {
         input.checked = input.value === this.extension;
       }
-      byId("save-picture").hidden = !PICTURES.includes(extension);
+      byId("save-picture").hidden = !PICTURE_EXTENSIONS.includes(extension);
       this.say("");
     }
     /** Shows a message, with the button that replaces a file if it `asks` for that. */
@@ -4073,20 +4046,20 @@
         if (answer.exists) return this.say(`${answer.exists} exists already.`, true);
         if (answer.unwritable) return this.refuse(answer.unwritable);
         this.dialog.close();
-        this.done(answer.written ?? this.name.value, answer.state, answer.warnings ?? []);
+        this.reportSaved(answer.written ?? this.name.value, answer.state, answer.warnings ?? []);
       } catch (e) {
         this.say(inWords(reason(e)));
       }
     }
     /** Downloads the file, since the browser knows a writable folder. */
-    async fetch() {
+    async downloadFile() {
       const target = this.target();
       if (!target) return;
       try {
         const { written = this.name.value, bytes = "", warnings = [] } = await this.app.connection.ask({ do: "download", ...target });
         const href = URL.createObjectURL(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
         h("a", { href, download: written }).click();
-        setTimeout(() => URL.revokeObjectURL(href), FETCHED);
+        setTimeout(() => URL.revokeObjectURL(href), DOWNLOAD_START);
         this.dialog.close();
         if (/\.svgz?$/i.test(written)) this.downloaded = JSON.stringify(this.app.state?.steps);
         this.app.tell("state");
@@ -4095,7 +4068,7 @@
         this.say(inWords(reason(e)));
       }
     }
-    done(written, state, warnings) {
+    reportSaved(written, state, warnings) {
       if (state) {
         this.app.state = state;
         this.app.tell("state");
@@ -4107,28 +4080,25 @@
       await this.app.settle();
       const target = this.target();
       if (!target) return;
-      let line = "";
-      let said = "The command line is on the clipboard";
       try {
         const { text = "", written } = await this.app.connection.ask({ do: "command-line", ...target });
-        line = text;
-        if (written) said += `; ${written}, which it reads, is beside the drawing now`;
+        try {
+          await navigator.clipboard.writeText(text);
+          toast(`The command line is on the clipboard${written ? `; ${written}, which it reads, is beside the drawing now` : ""}`);
+        } catch {
+          toast(text);
+        }
+        this.dialog.close();
       } catch (e) {
-        return this.say(inWords(reason(e)));
+        this.say(inWords(reason(e)));
       }
-      try {
-        await navigator.clipboard.writeText(line);
-        toast(said);
-      } catch {
-        toast(line);
-      }
-      this.dialog.close();
     }
   };
 
   // src/words.ts
   var BUNDLED = "Noto Sans (bundled)";
-  var LARGEST = 2e3;
+  var MAX_SIZE = 2e3;
+  var MAX_SPACING = 500;
   var WordsDialog = class {
     constructor(app2) {
       this.app = app2;
@@ -4145,9 +4115,7 @@
         e.preventDefault();
         void this.set();
       });
-      app2.listen((change) => {
-        if (change === "state") this.show();
-      });
+      app2.listen(["state"], () => this.show());
     }
     app;
     dialog = byId("words-dialog");
@@ -4172,7 +4140,7 @@
     }
     async open() {
       if (!await this.app.settle()) return;
-      const answer = this.families ? null : await this.app.attempt(() => this.app.connection.ask({ do: "families" }));
+      const answer = this.families ? null : await this.app.request({ do: "families" });
       this.families ??= answer?.families ?? [];
       const { text, font, size, spacing } = this.app.state?.words ?? { text: "", font: null, size: 20, spacing: 0 };
       [this.text.value, this.size.value, this.spacing.value, this.search.value] = [text, String(size), String(spacing), ""];
@@ -4199,8 +4167,8 @@
       const { app: app2 } = this;
       const [size, spacing] = [inUnits(this.size.value, "mm") ?? NaN, inUnits(this.spacing.value, "%") ?? NaN];
       if (this.text.value.trim() === "") return this.say("Type some words first");
-      if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
-      if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
+      if (!(size > 0 && size <= MAX_SIZE)) return this.say(`The size is a number of mm up to ${MAX_SIZE}, such as 20`);
+      if (!(Math.abs(spacing) <= MAX_SPACING)) return this.say("The spacing is a number of per cent, such as 5");
       try {
         const words2 = { text: this.text.value, font: this.font, size, spacing };
         await app2.enter(async () => {
@@ -4219,11 +4187,10 @@
   };
 
   // src/settings.ts
-  var OF_ARTWORK = [0, 100];
-  var BOTH_WAYS = [-100, 100];
+  var LENGTH_RANGE = [0, 100];
+  var SHIFT_RANGE = [-100, 100];
   var COARSE = 20;
   var NOTES = { mls: " Pins pull everything around them, also across gaps; pick a part to move it alone." };
-  var MM2 = 96 / 25.4;
   var SIDE_BY_SIDE = 3;
   var SKETCHES = {
     line: "Drag from its start to its end on the drawing",
@@ -4233,15 +4200,14 @@
   var Settings = class {
     constructor(app2) {
       this.app = app2;
-      app2.listen((change) => {
-        if (change === "steps" || change === "state") this.build();
-        if (change === "handles") this.build();
-        if (change === "values") this.refresh();
-      });
+      app2.listen(["steps", "state", "handles"], () => this.build());
+      app2.listen(["values"], () => this.refresh());
     }
     app;
     box = byId("settings");
-    shown = "";
+    /** Identifies the controls that have been built: step, deformation, adjust values, circles. */
+    builtFor = "";
+    /** Functions that show present values in the controls. */
     refreshers = [];
     /** Asks for a path on the canvas; a click returns its id. */
     onPick = () => {
@@ -4257,9 +4223,10 @@
       const deformation = this.app.deformation(step2?.deformation);
       const params = deformation?.params ?? [];
       const circles = params.filter((p) => this.app.grip(p.name)?.circle).map((p) => p.name);
-      const signature = [this.app.selected, step2?.deformation, ...this.adjusts(params), ...circles].join();
-      if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
-      this.shown = signature;
+      const adjusts = params.flatMap((p) => (this.app.grip(p.name)?.adjust ?? []).map((a) => `${a.name} ${a.least} ${a.most}`));
+      const signature = [this.app.selected, step2?.deformation, ...adjusts, ...circles].join();
+      if (signature === this.builtFor && this.box.childElementCount > 0) return this.refresh();
+      this.builtFor = signature;
       this.onOther();
       this.refreshers = [];
       if (!step2 || !deformation) return this.box.replaceChildren();
@@ -4305,13 +4272,9 @@
         case "angle":
           return this.slider(p, id, label, title);
         case "path": {
-          const pick = h("button", { type: "button", class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, "Pick from drawing");
-          pick.addEventListener("click", () => this.onPick((name) => this.app.set(p.name, [`#${name}`], true)));
-          const draws = ["line", "path", "circle"].map((kind) => {
-            const button = h("button", { type: "button", class: "link", title: SKETCHES[kind] }, `Draw ${kind}`);
-            button.addEventListener("click", () => this.onDraw(kind, (value) => this.app.set(p.name, [value], true)));
-            return button;
-          });
+          const set2 = (value) => this.app.set(p.name, [value], true);
+          const pick = button({ class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, () => this.onPick((name) => set2(`#${name}`)), "Pick from drawing");
+          const draws = ["line", "path", "circle"].map((kind) => button({ class: "link", title: SKETCHES[kind] }, () => this.onDraw(kind, set2), `Draw ${kind}`));
           const radius = this.app.grip(p.name)?.circle && this.radius(p, id);
           return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), ...radius || [], this.text(p, id));
         }
@@ -4337,7 +4300,7 @@
         select.value = value;
       };
       this.refreshers.push(show2);
-      void this.app.attempt(() => this.app.connection.ask({ do: "families" })).then((answer) => {
+      void this.app.request({ do: "families" }).then((answer) => {
         select.append(...(answer?.families ?? []).map((name) => h("option", { value: name }, name)));
         show2();
       });
@@ -4347,7 +4310,7 @@
     radius(p, id) {
       const { app: app2 } = this;
       const [a, b] = app2.state?.toPx ?? [1, 0];
-      const unit = MM2 / Math.hypot(a, b);
+      const unit = MM / Math.hypot(a, b);
       const circle2 = () => app2.grip(p.name)?.circle;
       const input = h("input", { type: "text", id: `${id}-radius`, class: "value", inputmode: "decimal", autocomplete: "off" });
       const number = (text) => inUnits(text, "mm") ?? NaN;
@@ -4355,22 +4318,21 @@
         const present = circle2();
         return present ? app2.setTyped(p.name, [arc([present[0], present[1], mm * unit, present[3], present[4]])]) : null;
       };
-      const field = new Field(input, () => short2((circle2()?.[2] ?? 0) / unit).toString(), (text) => set2(number(text)), (text) => number(text) > 0 ? null : asked("mm", 0));
+      const field = new Field(input, () => hundredths((circle2()?.[2] ?? 0) / unit).toString(), (text) => set2(number(text)), (text) => number(text) > 0 ? null : asked("mm", 0));
       const note = h("p", { class: "wrong", role: "status" });
-      const grow = h("button", { type: "button", class: "link" });
-      grow.addEventListener("click", () => void set2(Number(grow.dataset.mm)));
-      const long = h("div", { hidden: true }, note, grow);
+      const grow = button({ class: "link" }, () => void set2(Number(grow.dataset.mm)));
+      const warning = h("div", { hidden: true }, note, grow);
       this.refreshers.push(() => {
         field.refresh();
-        const least = app2.tooSmall(p.name);
-        long.hidden = least === null;
+        const least = app2.leastRadius(p.name);
+        warning.hidden = least === null;
         if (least === null) return;
         grow.dataset.mm = String(Math.ceil(10.6 * least / unit) / 10);
         note.textContent = "The artwork is longer than this circle, and overlaps itself.";
         grow.textContent = `Let the circle grow to ${grow.dataset.mm} mm`;
       });
       const row = h("div", { class: "row" }, h("label", { for: input.id }, "Radius"), h("span", { class: "measure" }, input, h("span", { class: "unit" }, "mm")));
-      return [row, field.message, long];
+      return [row, field.message, warning];
     }
     flag(p, id, title) {
       const box = h("input", { type: "checkbox", id, role: "switch" });
@@ -4390,10 +4352,11 @@
       });
       return h("fieldset", { class: "field", title }, h("legend", {}, paramName(p)), h("div", { class: "segments" }, ...options));
     }
-    /** Returns a row with a field for a number in the unit of its value, and the line for its message. */
+    /** Returns a row with a field for a number in the unit of its value, or else the usual one, and the line for its message. Arrow keys
+     * change the value by `by`. */
     number(p, id, label, usual, by) {
       const isWhole = p.kind === "count";
-      const measure = h("span", { class: "unit" });
+      const unitLabel = h("span", { class: "unit" });
       const text = (q) => `${short(q.value)}${q.unit === "°" ? "" : q.unit}`;
       const present = () => {
         const typed = this.current(p);
@@ -4411,7 +4374,9 @@
       };
       const take = (typed) => typed.trim() === "" ? this.app.setTyped(p.name, []) : this.app.setTyped(p.name, [text(evaluate(typed, unit()))]);
       const nudge = (typed, times) => {
-        const q = isWrong(typed) === null ? evaluate(typed, unit()) ?? this.derived(p, usual) : null;
+        if (isWrong(typed) !== null) return null;
+        const derived = this.inUnit(p, usual, this.current(p));
+        const q = evaluate(typed, unit()) ?? (derived === null ? null : { value: derived, unit: usual });
         if (!q) return null;
         const value = Math.min(Math.max(Number((q.value + times * by).toFixed(6)), least ?? -Infinity), most ?? Infinity);
         this.app.setSoon(p.name, [text({ value, unit: q.unit })]);
@@ -4424,29 +4389,19 @@
       const input = h("input", { type: "text", id, class: "value", inputmode: "decimal", spellcheck: false, autocomplete: "off", placeholder: "auto" });
       const field = new Field(input, shown3, take, isWrong, nudge);
       this.refreshers.push(() => {
-        measure.textContent = unit();
+        unitLabel.textContent = unit();
         field.refresh();
       });
-      return [h("div", { class: "row" }, label, h("span", { class: "measure" }, input, measure)), field.message];
-    }
-    /** Returns the value of a parameter that is not given. */
-    derived(p, unit) {
-      const value = this.inUnit(p, unit, this.current(p));
-      return value === null ? null : { value, unit };
+      return [h("div", { class: "row" }, label, h("span", { class: "measure" }, input, unitLabel)), field.message];
     }
     /** Returns a button to choose a file. Pages do not learn its folder, so it is copied beside the drawing. */
     chooseFile(p) {
       const input = h("input", { type: "file", hidden: true, "aria-label": paramName(p) });
-      input.addEventListener("change", async () => {
-        const file = input.files?.[0];
-        input.value = "";
-        if (!file) return;
+      onFile(input, async (file) => {
         const written = await bring(this.app, file);
         if (written) this.app.set(p.name, [written], true);
       });
-      const button = h("button", { type: "button", class: "link", title: "A copy is put beside the drawing" }, "Choose file…");
-      button.addEventListener("click", () => input.click());
-      return h("span", {}, input, button);
+      return h("span", {}, input, button({ class: "link", title: "A copy is put beside the drawing" }, () => input.click(), "Choose file…"));
     }
     select(p, id) {
       const select = h("select", { id }, ...(p.words ?? []).map((word) => h("option", { value: word }, words(word))));
@@ -4473,36 +4428,32 @@
       });
       return h("div", {}, input, field.message);
     }
-    /** Returns the names of the adjust values shown. */
-    adjusts(params) {
-      return params.flatMap((p) => (this.app.grip(p.name)?.adjust ?? []).map((a) => `${a.name} ${a.least} ${a.most}`));
-    }
     /** Returns the slider of an adjust value. */
     adjust(p, all, i, title) {
-      const { least, most, name } = all[i];
+      const { least, most, name, default: usual } = all[i];
       const [unit, size] = adjustUnit(all[i]);
       const id = `set-${p.name}-${name}`;
       const range = [Math.ceil(least / size), Math.floor(most / size)];
       const slider = h("input", { type: "range", id: `${id}-slider`, min: range[0], max: range[1], step: step(range), "aria-label": adjustName(all, i) });
       const input = h("input", { type: "text", id, class: "value", inputmode: "decimal", spellcheck: false, autocomplete: "off" });
       const sign = unit === "deg" ? "°" : unit;
+      const present = () => {
+        const adjusts = structuredClone(all);
+        readAdjust(adjusts, this.values(p));
+        return adjusts;
+      };
       const values = (value) => {
-        const present = structuredClone(all);
-        readAdjust(present, this.values(p));
-        present[i].value = Math.min(Math.max(value * size, least), most);
-        return writeAdjust(present);
+        const adjusts = present();
+        adjusts[i].value = Math.min(Math.max(value * size, least), most);
+        return writeAdjust(adjusts);
       };
-      const current = () => {
-        const present = structuredClone(all);
-        readAdjust(present, this.values(p));
-        return Number((present[i].value / size).toFixed(2));
-      };
-      this.slide(slider, (value) => [p.name, values(value)], () => values(all[i].default / size));
+      const current = () => hundredths(present()[i].value / size);
+      this.slide(slider, (value) => [p.name, values(value)], () => values(usual / size));
       const isWrong = (typed) => {
-        const q = evaluate(typed || short(all[i].default / size), sign);
-        return q && q.unit === sign && q.value >= least / size && q.value <= most / size ? null : asked(sign, short2(least / size), short2(most / size));
+        const q = evaluate(typed || short(usual / size), sign);
+        return q && q.unit === sign && q.value >= least / size && q.value <= most / size ? null : asked(sign, hundredths(least / size), hundredths(most / size));
       };
-      const take = (typed) => this.app.setTyped(p.name, values(evaluate(typed, sign)?.value ?? all[i].default / size));
+      const take = (typed) => this.app.setTyped(p.name, values(evaluate(typed, sign)?.value ?? usual / size));
       const nudge = (typed, times) => {
         const q = isWrong(typed) === null ? evaluate(typed, sign) : null;
         if (!q) return null;
@@ -4517,17 +4468,17 @@
       const label = h("label", { for: id, title }, adjustName(all, i));
       return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, h("span", { class: "measure" }, input, h("span", { class: "unit" }, sign))), field.message, slider);
     }
-    /** Connects a slider: a drag is one change, and so is a sequence of keys. */
+    /** Connects a slider: a drag is one change, and so is a sequence of keys. `values` gives a parameter's name and values. */
     slide(slider, values, reset) {
       const { app: app2 } = this;
-      let [isDragged2, isGivenUp] = [false, false];
+      let [isDragged2, isCancelled] = [false, false];
       slider.addEventListener("input", () => {
-        if (!slider.matches(":active") || isGivenUp) return;
+        if (!slider.matches(":active") || isCancelled) return;
         if (!isDragged2) {
           const step2 = app2.step;
           const before2 = structuredClone(step2);
           app2.hold = () => {
-            isGivenUp = true;
+            isCancelled = true;
             app2.cancel(step2, before2);
           };
         }
@@ -4537,10 +4488,10 @@
       });
       slider.addEventListener("change", () => {
         app2.hold = null;
-        if (isGivenUp) this.refresh();
+        if (isCancelled) this.refresh();
         else if (isDragged2) app2.set(...values(Number(slider.value)), true);
         else app2.setSoon(...values(Number(slider.value)));
-        isDragged2 = isGivenUp = false;
+        isDragged2 = isCancelled = false;
       });
       slider.addEventListener("dblclick", () => app2.set(values(0)[0], reset(), true));
     }
@@ -4556,9 +4507,8 @@
         slider.value = String(value ?? range[0]);
         slider.classList.toggle("unset", value === null);
       });
-      const usual = p.kind === "angle" ? "°" : unit;
-      const [row, wrong] = this.number(p, id, label, usual, range[1] - range[0] >= COARSE ? 1 : step(range));
-      return h("div", { class: "field slider", title }, row, wrong, slider);
+      const [row, message] = this.number(p, id, label, p.kind === "angle" ? "°" : unit, range[1] - range[0] >= COARSE ? 1 : step(range));
+      return h("div", { class: "field slider", title }, row, message, slider);
     }
     /** Returns the value of a parameter in the unit of its slider. */
     inUnit(p, unit, typed) {
@@ -4578,11 +4528,11 @@
       const [sin, cos] = [Math.sin(turn), Math.cos(turn)];
       const along = ["rotate", "skew"].includes(word) ? [cos, sin] : [1, 0];
       const up = ["rotate", "ribbon"].includes(word) ? [sin, -cos] : [0, -1];
-      const place2 = (x, y) => {
+      const image = (x, y) => {
         const angle = turn + x / radius;
         return word === "bend" ? [(radius + y) * Math.sin(angle), -(radius + y) * Math.cos(angle)] : [radius * sin + x * along[0] + y * up[0], -radius * cos + x * along[1] + y * up[1]];
       };
-      const line = (...points) => `M${points.map(([x, y]) => place2(x, y).map((v) => v.toFixed(1)).join(",")).join("L")}`;
+      const line = (...points) => `M${points.map(([x, y]) => image(x, y).map((v) => v.toFixed(1)).join(",")).join("L")}`;
       const sides = [[-half, 0], [-half, height / 2], [-half, height], [0, height], [half, height], [half, height / 2], [half, 0]];
       return line(...sides) + line([-half, height / 2], [half, height / 2]);
     });
@@ -4612,15 +4562,14 @@
   }
   function scale(p) {
     const [from, to] = p.slider;
-    if (p.kind === "length") return ["%", p.least === void 0 && Number.parseFloat(p.default ?? "1") === 0 ? BOTH_WAYS : OF_ARTWORK];
+    if (p.kind === "length") return ["%", p.least === void 0 && Number.parseFloat(p.default ?? "1") === 0 ? SHIFT_RANGE : LENGTH_RANGE];
     if (p.kind === "number" && p.default?.endsWith("%")) return ["%", [100 * from, 100 * to]];
     return ["", [from, to]];
   }
   function step([from, to]) {
-    const raw = (to - from) / 400;
-    return 10 ** Math.floor(Math.log10(Math.max(raw, 1e-9)));
+    return 10 ** Math.floor(Math.log10(Math.max((to - from) / 400, 1e-9)));
   }
-  function short2(value) {
+  function hundredths(value) {
     return Number(value.toFixed(2));
   }
   function sentence(title) {
@@ -4638,9 +4587,9 @@
     point: "Click where the words begin",
     round: "Click points around the outline, many where it is round; a click on the first one or Enter ends it"
   };
-  var NEAR = 8;
+  var SAME_POINT = 8;
   var CORNER = 50;
-  var [FROM, TO] = [90, 450];
+  var [CIRCLE_START, CIRCLE_END] = [90, 450];
   var Sketching = class {
     constructor(app2, stage2) {
       this.app = app2;
@@ -4658,24 +4607,24 @@
       const points = [];
       const stop = new AbortController();
       const listen = { signal: stop.signal, capture: true };
-      const giveUp = () => this.end();
+      const cancel = () => this.end();
+      const hideHint = toast(HINTS[kind], true);
       this.stop = () => {
         stop.abort();
-        explained();
-        if (app2.hold === giveUp) app2.hold = null;
+        hideHint();
+        if (app2.hold === cancel) app2.hold = null;
       };
-      app2.hold = giveUp;
+      app2.hold = cancel;
       stage2.svg.classList.add("picking");
-      const explained = toast(HINTS[kind], true);
       const done = (value) => {
         this.end();
         if (value) take(value);
       };
       const text = (p) => p.map(short).join(",");
-      const isNear = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < NEAR * stage2.camera.pixel;
-      const place2 = (e) => stage2.camera.toUser(stage2.point(e));
+      const isNear = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < SAME_POINT * stage2.camera.pixel;
+      const userPoint = (e) => stage2.camera.toUser(stage2.point(e));
       const path = (closed2) => {
-        if (kind === "round") return points.length < 3 ? null : around(points, text);
+        if (kind === "round") return points.length < 3 ? null : smoothRing(points, text);
         return points.length < 2 ? null : `M${points.map(text).join(" L")}${closed2 ? " Z" : ""}`;
       };
       const isClicked = kind === "path" || kind === "round";
@@ -4683,18 +4632,18 @@
         if (e.button !== 0) return;
         e.stopPropagation();
         e.preventDefault();
-        const at = place2(e);
+        const at = userPoint(e);
         if (kind === "point") return done(text(at));
         if (isClicked && points.length > 2 && isNear(at, points[0])) return done(path(true));
         if (points.length === 0 || !isNear(at, points[points.length - 1])) points.push(at);
         this.show(kind, points, at);
       }, listen);
-      stage2.svg.addEventListener("pointermove", (e) => this.show(kind, points, place2(e)), listen);
+      stage2.svg.addEventListener("pointermove", (e) => this.show(kind, points, userPoint(e)), listen);
       window.addEventListener("pointerup", (e) => {
         if (isClicked || points.length === 0) return;
-        const [from, to] = [points[0], place2(e)];
+        const [from, to] = [points[0], userPoint(e)];
         if (isNear(from, to)) return void (points.length = 0);
-        done(kind === "line" ? `M${text(from)} L${text(to)}` : arc([...from, Math.hypot(to[0] - from[0], to[1] - from[1]), FROM, TO]));
+        done(kind === "line" ? `M${text(from)} L${text(to)}` : arc([...from, Math.hypot(to[0] - from[0], to[1] - from[1]), CIRCLE_START, CIRCLE_END]));
       }, listen);
       stage2.svg.addEventListener("dblclick", (e) => {
         e.stopPropagation();
@@ -4709,11 +4658,11 @@
     }
     show(kind, points, to) {
       if (points.length === 0) return;
-      const places = [...points, to].map((p) => this.stage.camera.toScreen(p));
-      const [[x, y], [px, py]] = [places[0], places.at(-1)];
+      const onScreen = [...points, to].map((p) => this.stage.camera.toScreen(p));
+      const [[x, y], [px, py]] = [onScreen[0], onScreen.at(-1)];
       const r = Math.hypot(px - x, py - y);
       const circle2 = `M${x - r},${y}a${r},${r} 0 1 1 ${2 * r},0a${r},${r} 0 1 1 ${-2 * r},0`;
-      this.line.setAttribute("d", kind === "circle" ? circle2 : `M${places.join("L")}`);
+      this.line.setAttribute("d", kind === "circle" ? circle2 : `M${onScreen.join("L")}`);
     }
     /** Ends drawing, or picking a path by a click: only one of them is under way at a time. */
     end() {
@@ -4723,7 +4672,7 @@
       this.stage.pick(null);
     }
   };
-  function around(points, text) {
+  function smoothRing(points, text) {
     const at = (i) => points[(i + points.length) % points.length];
     const minus = ([ax, ay], [bx, by]) => [ax - bx, ay - by];
     const tangent = (i) => {
@@ -4742,25 +4691,23 @@
   }
 
   // src/steps.ts
-  var SHAKES2 = 5;
+  var CLICK_DISTANCE2 = 5;
   var Steps = class {
     constructor(app2) {
       this.app = app2;
-      app2.listen((change) => {
-        if (change === "steps" || change === "state") this.build();
-        if (change === "report" && app2.gone.join() !== this.gone) this.build();
-      });
+      app2.listen(["steps", "state"], () => this.build());
+      app2.listen(["report"], () => app2.gone.join() !== this.gone && this.build());
       this.add.addEventListener("click", () => this.append());
       this.list.addEventListener("dblclick", (e) => {
-        const button = e.target.closest("button.step");
-        if (button) this.rename(Array.from(this.list.children).indexOf(button.parentElement));
+        const button2 = e.target.closest("button.step");
+        if (button2) this.rename(Array.from(this.list.children).indexOf(button2.parentElement));
       });
     }
     app;
     list = byId("steps");
-    /** The index to which a row has been moved. */
-    moved = null;
-    /** The steps shown as lacking their letters. */
+    /** The index to which a row has been moved, whose focus follows. */
+    movedTo = null;
+    /** The indices of the steps shown as lacking their letters. */
     gone = "";
     /** `true` while a row is dragged, which is not a click on its button. */
     isDragged = false;
@@ -4782,9 +4729,9 @@
       const kind = focused?.dataset.kind ?? "";
       const row = Array.from(this.list.children).indexOf(focused?.closest("li"));
       this.list.replaceChildren(...steps.map((step2, i) => this.row(step2, i)));
-      const near = focused ? this.list.children[Math.min(this.moved ?? row, steps.length - 1)] : null;
+      const near = focused ? this.list.children[Math.min(this.movedTo ?? row, steps.length - 1)] : null;
       (near?.querySelector(`[data-kind="${kind}"]:enabled`) ?? near?.querySelector(".step"))?.focus();
-      this.moved = null;
+      this.movedTo = null;
       if (appends) this.list.append(h("li", { class: "wanted" }, `${steps.length + 1}. Choose a shape`));
       this.add.setAttribute("aria-pressed", String(appends));
       this.note.hidden = selected >= steps.length - 1;
@@ -4794,42 +4741,34 @@
     row(step2, i) {
       const { app: app2 } = this;
       const { steps, selected } = app2;
-      const first = steps.filter((s2) => app2.isFirst(s2)).length;
+      const edits = steps.filter((s2) => app2.isFirst(s2)).length;
       const title = stepName(step2, app2.deformation(step2.deformation));
       const count = step2.select?.length ?? 0;
       const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
       const gone = app2.gone.includes(i) && h("small", { class: "muted" }, count === 1 ? " (its letter is gone)" : " (its letters are gone)");
-      const choose = h("button", { type: "button", class: "step", "data-kind": "step", title: "Drag it to move it, double-click to rename it", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`, scope, gone);
-      choose.addEventListener("click", () => {
-        if (!this.isDragged) void app2.select(i);
-      });
-      choose.addEventListener("pointerdown", (e) => this.drag(e, i, first, moved2));
-      const moved2 = (to) => {
-        const others = steps.filter((_, k) => k !== i);
-        others.splice(to, 0, step2);
-        this.moved = to;
-        void app2.arrange(others, to);
+      const attributes = { class: "step", "data-kind": "step", title: "Drag it to move it, double-click to rename it", "aria-current": i === selected ? "step" : void 0 };
+      const choose = button(attributes, () => this.isDragged || void app2.select(i), `${i + 1}. ${title}`, scope, gone);
+      choose.addEventListener("pointerdown", (e) => this.drag(e, i, edits, moveTo));
+      const moveTo = (to) => {
+        this.movedTo = to;
+        void app2.arrange(steps.toSpliced(i, 1).toSpliced(to, 0, step2), to);
       };
       const hide2 = () => void app2.arrange(steps.map((s2, k) => k === i ? { ...s2, hidden: !step2.hidden || void 0 } : s2), selected);
-      const button = (name, label, action, disabled = false) => {
-        const b = h("button", { type: "button", class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, icon(name));
-        b.addEventListener("click", action);
-        return b;
-      };
+      const iconButton = (name, label, click, disabled = false) => button({ class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, click, icon(name));
       const remove = () => void app2.arrange(steps.filter((_, k) => k !== i), steps.length - 2);
       return h(
         "li",
         { class: `${i === selected ? "chosen" : ""} ${step2.hidden ? "hidden" : ""}` },
         choose,
-        !app2.isProposal && button("eye", `${step2.hidden ? "Show" : "Hide"} ${title}`, hide2),
-        steps.length > 1 && button("up", `Move ${title} up`, () => moved2(i - 1), i <= first),
-        steps.length > 1 && button("down", `Move ${title} down`, () => moved2(i + 1), i < first || i === steps.length - 1),
-        !app2.isProposal && button("close", `Remove ${title}`, remove),
+        !app2.isProposal && iconButton("eye", `${step2.hidden ? "Show" : "Hide"} ${title}`, hide2),
+        steps.length > 1 && iconButton("up", `Move ${title} up`, () => moveTo(i - 1), i <= edits),
+        steps.length > 1 && iconButton("down", `Move ${title} down`, () => moveTo(i + 1), i < edits || i === steps.length - 1),
+        !app2.isProposal && iconButton("close", `Remove ${title}`, remove),
         !app2.isProposal && i === selected && h(
           "span",
           { class: "acts" },
-          button("pen", `Rename ${title}`, () => this.rename(i)),
-          i >= first && button("copy", `Duplicate ${title}`, () => void app2.arrange(steps.toSpliced(i + 1, 0, structuredClone(step2)), i + 1))
+          iconButton("pen", `Rename ${title}`, () => this.rename(i)),
+          i >= edits && iconButton("copy", `Duplicate ${title}`, () => void app2.arrange(steps.toSpliced(i + 1, 0, structuredClone(step2)), i + 1))
         )
       );
     }
@@ -4856,20 +4795,20 @@
       row.firstElementChild?.replaceWith(input);
       input.select();
     }
-    /** Follows a pointer that moves a row among those that may be exchanged. */
-    drag(e, i, first, moved2) {
+    /** Follows a pointer that moves a row among the edits, which come first, or among the deformations. */
+    drag(e, i, edits, moveTo) {
       if (e.pointerType === "touch" || e.button !== 0 || this.app.isProposal) return;
       const rows = Array.from(this.list.children);
-      const kin = (k) => k < first === i < first && k < this.app.steps.length;
+      const isAllowed = (k) => k < edits === i < edits && k < this.app.steps.length;
       this.isDragged = false;
       let to = i;
       const stop = new AbortController();
       window.addEventListener("pointermove", (event) => {
         if (event.pointerId !== e.pointerId) return;
-        this.isDragged ||= Math.abs(event.clientY - e.clientY) > SHAKES2;
+        this.isDragged ||= Math.abs(event.clientY - e.clientY) > CLICK_DISTANCE2;
         if (!this.isDragged) return;
-        const under = rows.findIndex((r, k) => kin(k) && event.clientY < r.getBoundingClientRect().bottom);
-        to = under >= 0 ? under : rows.findLastIndex((_, k) => kin(k));
+        const under = rows.findIndex((r, k) => isAllowed(k) && event.clientY < r.getBoundingClientRect().bottom);
+        to = under >= 0 ? under : rows.findLastIndex((_, k) => isAllowed(k));
         rows.forEach((r, k) => {
           r.classList.toggle("above", k === to && to < i);
           r.classList.toggle("below", k === to && to > i);
@@ -4878,7 +4817,7 @@
       for (const end2 of ["pointerup", "pointercancel"]) {
         window.addEventListener(end2, () => {
           stop.abort();
-          if (to !== i && end2 === "pointerup") moved2(to);
+          if (to !== i && end2 === "pointerup") moveTo(to);
         }, stop);
       }
     }
@@ -4937,13 +4876,13 @@
     byId("undo").focus();
   });
   function toggle(id, get, set2) {
-    const button = byId(id);
-    const show2 = () => button.setAttribute("aria-pressed", String(get()));
+    const button2 = byId(id);
+    const show2 = () => button2.setAttribute("aria-pressed", String(get()));
     const turn = () => {
       set2(!get());
       show2();
     };
-    button.addEventListener("click", turn);
+    button2.addEventListener("click", turn);
     show2();
     return turn;
   }
@@ -4975,8 +4914,8 @@
   var SHEETS = { "shapes-open": "open-shapes", "settings-open": "open-settings" };
   var { classList } = document.body;
   var closeSheets = () => classList.remove(...Object.keys(SHEETS));
-  for (const [sheet, button] of Object.entries(SHEETS)) {
-    on(button, () => {
+  for (const [sheet, button2] of Object.entries(SHEETS)) {
+    on(button2, () => {
       const opens = !classList.contains(sheet);
       closeSheets();
       classList.toggle(sheet, opens);
@@ -4990,32 +4929,32 @@
     const now = Object.keys(SHEETS).find((sheet) => classList.contains(sheet)) ?? "";
     if (now === opened) return;
     opened = now;
-    for (const [sheet, button] of Object.entries(SHEETS)) byId(button).setAttribute("aria-expanded", String(sheet === now));
+    for (const [sheet, button2] of Object.entries(SHEETS)) byId(button2).setAttribute("aria-expanded", String(sheet === now));
     stage.fit();
   }).observe(document.body, { attributeFilter: ["class"] });
   var before = byId("before");
-  var hide = () => void stage.before(false);
-  before.addEventListener("pointerdown", () => void stage.before(true));
+  var hide = () => void stage.showBefore(false);
+  before.addEventListener("pointerdown", () => void stage.showBefore(true));
   for (const end2 of ["pointerup", "pointerleave", "pointercancel", "blur", "keyup"]) before.addEventListener(end2, hide);
   before.addEventListener("keydown", (e) => {
-    if (e.key === " " || e.key === "Enter") void stage.before(true);
+    if (e.key === " " || e.key === "Enter") void stage.showBefore(true);
   });
   function escape() {
     app.hold?.();
     stage.pick(null);
     if (app.appends) app.append(false);
   }
-  var KEYS3 = {
+  var KEYS2 = {
     "+": () => stage.zoom(ZOOM),
     "=": () => stage.zoom(ZOOM),
     "-": () => stage.zoom(1 / ZOOM),
     "0": () => stage.fit(),
-    b: () => void stage.before(true),
+    b: () => void stage.showBefore(true),
     e: showEnd,
     "?": () => showKeys()
   };
   var COMMANDS2 = {
-    s: (shift) => void (shift ? saving.open() : saving.quick()),
+    s: (shift) => void (shift ? saving.open() : saving.save()),
     z: (shift) => void app.turn(shift ? "redo" : "undo"),
     y: () => void app.turn("redo")
   };
@@ -5024,7 +4963,7 @@
     if (key === "escape") return escape();
     if (e.altKey || isTyping(e.target) && key !== "s") return;
     const isCommand = e.ctrlKey || e.metaKey;
-    const action = isCommand ? COMMANDS2[key] : isTyping(e.target) ? void 0 : KEYS3[key];
+    const action = isCommand ? COMMANDS2[key] : isTyping(e.target) ? void 0 : KEYS2[key];
     if (!action) return;
     if (isCommand) e.preventDefault();
     if (app.isLive && (!e.repeat || !"be".includes(key))) action(e.shiftKey);

@@ -1,26 +1,26 @@
 //! Descriptions of the deformations and their parameters for the page, derived from the registry's tables.
 
 use pathwarp::Outline;
-use pathwarp::deform::{Info, Registry};
+use pathwarp::deform::{Gallery, Info, Registry};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings, is_inline, shape_names};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Describes all deformations, in menu order, and then the edits `first`. `foreign` pairs names in other programs with deformations.
-pub(crate) fn catalogue(registry: &Registry, first: &[Info], foreign: &[(&str, &str)]) -> Value {
+/// Describes all deformations, in menu order, and then the edits. `foreign` pairs names in other programs with deformations.
+pub(crate) fn catalogue(registry: &Registry, edits: &[Info], foreign: &[(&str, &str)]) -> Value {
     let described = |info: &Info| {
         let mut out = deformation(info);
         out["knownAs"] =
             foreign.iter().filter(|(w, name)| *name == info.name && !is_preset(info, w)).map(|(w, _)| *w).collect();
         out
     };
-    let first = first.iter().map(|info| {
+    let edits = edits.iter().map(|info| {
         let mut out = deformation(info);
         out["first"] = json!(true);
         out
     });
-    registry.entries().iter().map(|e| described(e.info())).chain(first).collect()
+    registry.entries().iter().map(|e| described(e.info())).chain(edits).collect()
 }
 
 /// Returns `true` if another program's name ends in a preset's name, by which it is found already.
@@ -32,7 +32,8 @@ fn is_preset(info: &Info, word: &str) -> bool {
 }
 
 fn deformation(info: &Info) -> Value {
-    let words: Vec<&str> = info.params.iter().filter(|p| p.kind != Kind::Path).map(|p| p.name).collect();
+    // Presets of a path are offered as variants.
+    let presets = |g: &Gallery| info.params.iter().any(|p| p.kind != Kind::Path && p.name == g.presets);
     // The page writes no file but the result.
     let params = info.params.iter().filter(|p| p.kind != Kind::Save);
     let variants = info.by_hand.variants.iter().map(|v| (v.label.to_owned(), v.param));
@@ -47,7 +48,7 @@ fn deformation(info: &Info) -> Value {
         "knownAs": [],
         "params": params.map(|p| param(info, p)).collect::<Value>(),
         "variants": variants.map(|(label, param)| json!({ "label": label, "param": param })).collect::<Value>(),
-        "gallery": info.gallery.filter(|g| words.contains(&g.presets)).map(|g| json!({ "title": g.title, "presets": g.presets, "bend": g.bend, "axis": g.axis })),
+        "gallery": info.gallery.filter(presets).map(|g| json!({ "title": g.title, "presets": g.presets, "bend": g.bend, "axis": g.axis })),
     })
 }
 
@@ -105,29 +106,24 @@ fn kind(kind: Kind) -> &'static str {
 
 /// Lists the named shapes that a deformation may begin with: a label, the parameter and the name.
 fn shapes(info: &Info) -> impl Iterator<Item = (String, &'static str, &'static str)> {
-    let taken =
-        info.gallery.map(|g| g.presets).filter(|n| info.params.iter().any(|p| p.name == *n && p.kind == Kind::Path));
-    taken.into_iter().flat_map(|param| {
-        shape_names()
-            .iter()
-            .map(move |name| (format!("{}{} shape", name[..1].to_uppercase(), &name[1..]), param, *name))
-    })
+    let presets = info.gallery.map(|g| g.presets);
+    let param = presets.filter(|n| info.params.iter().any(|p| p.name == *n && p.kind == Kind::Path));
+    let label = |name: &str| format!("{}{} shape", name[..1].to_uppercase(), &name[1..]);
+    param.into_iter().flat_map(move |param| shape_names().iter().map(move |name| (label(name), param, *name)))
 }
 
 /// Returns the values of a variant for artwork in `frame`: values without effect, or an example. A shape becomes draggable path data.
-pub(crate) fn of_variant(
+pub(crate) fn variant_values(
     info: &Info,
     label: &str,
     frame: Rect,
-    shows: bool,
+    is_example: bool,
 ) -> Result<BTreeMap<String, Vec<String>>, String> {
     /// Distance of the curves from the shape's arcs, as a share of the frame's width.
-    const FINE: f64 = 2e-4;
+    const ARC_TOLERANCE: f64 = 2e-4;
     if let Some(v) = info.by_hand.variants.iter().find(|v| v.label == label) {
-        return Ok(BTreeMap::from([(
-            v.param.to_owned(),
-            vec![laid_out(if shows { v.showing } else { v.neutral }, frame)],
-        )]));
+        let value = fit_to_frame(if is_example { v.showing } else { v.neutral }, frame);
+        return Ok(BTreeMap::from([(v.param.to_owned(), vec![value])]));
     }
     let shape = shapes(info).find(|s| s.0 == label);
     let (_, param, name) = shape.ok_or_else(|| format!("{} has no variant {label}", info.name))?;
@@ -135,17 +131,17 @@ pub(crate) fn of_variant(
     let path = Settings::new(info.params, &args, &Frame::new(frame)).and_then(|s| s.path_if(param));
     let path = path.map_err(|e| e.to_string())?;
     // Convert arcs to curves with few nodes.
-    let curves = path.map(|p| Outline::from(&p.outline.to_bez_path(FINE * frame.width())));
+    let curves = path.map(|p| Outline::from(&p.outline.to_bez_path(ARC_TOLERANCE * frame.width())));
     Ok(curves.map(|c| (param.to_owned(), vec![crate::grips::path_data(&c)])).into_iter().collect())
 }
 
 /// Returns the first values of a deformation for artwork in `frame`.
-pub(crate) fn opening(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>> {
+pub(crate) fn opening_values(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>> {
     let mut out: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for (param, value) in info.by_hand.neutral {
         let is_data = info.params.iter().any(|p| p.name == *param && is_path_data(p, value));
-        let laid = if is_data { laid_out(value, frame) } else { (*value).to_owned() };
-        out.entry((*param).to_owned()).or_default().push(laid);
+        let value = if is_data { fit_to_frame(value, frame) } else { (*value).to_owned() };
+        out.entry((*param).to_owned()).or_default().push(value);
     }
     // A preset shows its effect by itself, so the first one serves.
     if let Some((gallery, p)) = info.gallery.and_then(|g| Some((g, info.params.iter().find(|p| p.name == g.presets)?)))
@@ -155,18 +151,18 @@ pub(crate) fn opening(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>>
         out.insert(gallery.presets.to_owned(), vec![(*first).to_owned()]);
         return out;
     }
-    if out.is_empty() && !shows_something(info) { example(info, frame) } else { out }
+    if out.is_empty() && !shows_something(info) { example_values(info, frame) } else { out }
 }
 
 /// Returns values that show the effect of a deformation on artwork in `frame`.
-pub(crate) fn example(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>> {
+pub(crate) fn example_values(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>> {
     if !info.by_hand.showing.is_empty() {
         return info.by_hand.showing.iter().map(|(param, v)| ((*param).to_owned(), vec![(*v).to_owned()])).collect();
     }
     let mut out: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for (name, value) in info.demo {
         if let Some(p) = info.params.iter().find(|p| p.name == *name) {
-            out.entry((*name).to_owned()).or_default().push(from_demo(p, value, frame));
+            out.entry((*name).to_owned()).or_default().push(demo_value(p, value, frame));
         }
     }
     out
@@ -183,17 +179,17 @@ fn is_path_data(p: &Param, value: &str) -> bool {
 }
 
 /// Maps path data from the box 0,0,100,100 onto the frame.
-fn laid_out(data: &str, frame: Rect) -> String {
+fn fit_to_frame(data: &str, frame: Rect) -> String {
     let Ok(outline) = Outline::from_svg(data) else { return data.to_owned() };
-    let place = Affine::translate(frame.origin().to_vec2())
+    let to_frame = Affine::translate(frame.origin().to_vec2())
         * Affine::scale_non_uniform(0.01 * frame.width(), 0.01 * frame.height());
-    crate::grips::path_data(&outline.transformed(place))
+    crate::grips::path_data(&outline.transformed(to_frame))
 }
 
 /// Maps an example value from the box 0,0,100,100 onto this frame: its coordinates become percentages.
-fn from_demo(p: &Param, value: &str, frame: Rect) -> String {
+fn demo_value(p: &Param, value: &str, frame: Rect) -> String {
     if is_path_data(p, value) {
-        return laid_out(value, frame);
+        return fit_to_frame(value, frame);
     }
     let is_number = |t: &str| t.parse::<f64>().is_ok();
     let percent = |t: &str| if is_number(t) { format!("{t}%") } else { t.to_owned() };
@@ -229,13 +225,13 @@ mod tests {
         let labels: Vec<&str> = all.as_array().unwrap().iter().map(|v| v["label"].as_str().unwrap()).collect();
         assert!(labels.contains(&"Heart shape") && labels.contains(&"Star shape"), "{labels:?}");
         for label in labels.iter().filter(|l| l.ends_with(" shape") && **l != "Closed shape") {
-            let data = &of_variant(info, label, frame, false).unwrap()["envelope"][0];
+            let data = &variant_values(info, label, frame, false).unwrap()["envelope"][0];
             assert!(is_inline(data), "{label}: {data}");
             let bounds = Outline::from_svg(data).unwrap().bounding_box().unwrap();
             assert!((bounds.width() - 120.0).abs() < 0.05, "{label}: {bounds:?}");
             assert!(bounds.center().distance(frame.center()) < 0.05, "{label}: {bounds:?}");
         }
-        assert!(of_variant(info, "Nose shape", frame, false).is_err());
+        assert!(variant_values(info, "Nose shape", frame, false).is_err());
     }
 
     #[test]
@@ -269,7 +265,7 @@ mod tests {
     const FRAME: Rect = Rect::new(20.0, 30.0, 684.0, 230.0);
 
     fn build(info: &Info) -> pathwarp::recipe::BuiltRecipe {
-        build_with(info, opening(info, FRAME))
+        build_with(info, opening_values(info, FRAME))
     }
 
     fn build_with(info: &Info, values: BTreeMap<String, Vec<String>>) -> pathwarp::recipe::BuiltRecipe {
@@ -300,7 +296,8 @@ mod tests {
         let infos = || registry.entries().iter().map(|e| e.info());
         let variants = || infos().flat_map(|i| i.by_hand.variants.iter().map(move |v| (i, v)));
         let usual = infos().filter(|i| !i.by_hand.neutral.is_empty()).map(|i| (i.name, build(i)));
-        let others = variants().map(|(i, v)| (v.label, build_with(i, of_variant(i, v.label, FRAME, false).unwrap())));
+        let others =
+            variants().map(|(i, v)| (v.label, build_with(i, variant_values(i, v.label, FRAME, false).unwrap())));
         for (name, built) in usual.chain(others) {
             for p in [Point::new(20.0, 30.0), Point::new(333.0, 111.0), Point::new(600.0, 200.0)] {
                 let off = built.map.point(p).distance(p);
@@ -309,7 +306,7 @@ mod tests {
         }
         for (info, v) in variants() {
             let p = FRAME.center() + Vec2::new(60.0, 30.0);
-            let built = build_with(info, of_variant(info, v.label, FRAME, true).unwrap());
+            let built = build_with(info, variant_values(info, v.label, FRAME, true).unwrap());
             assert!(built.map.point(p).distance(p) > 5.0, "{} shows nothing", v.label);
         }
     }
@@ -321,7 +318,7 @@ mod tests {
         let registry = Registry::builtin();
         let frames = [FRAME, Rect::new(0.0, 0.0, 600.0, 80.0)];
         for (frame, entry) in frames.iter().flat_map(|f| registry.entries().iter().map(move |e| (*f, e))) {
-            let built = build_in(entry.info(), example(entry.info(), frame), frame);
+            let built = build_in(entry.info(), example_values(entry.info(), frame), frame);
             let at =
                 |u: f64, v: f64| built.map.point(frame.origin() + Vec2::new(u * frame.width(), v * frame.height()));
             for (u, v) in (1..40).flat_map(|i| (1..40).map(move |j| (f64::from(i) / 40.0, f64::from(j) / 40.0))) {

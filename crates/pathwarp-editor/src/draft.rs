@@ -27,9 +27,10 @@ pub(crate) struct Moment {
     pub(crate) drawing: usize,
 }
 
-/// The contents of a draft.
+/// The contents of a draft: the present state, and those to undo and to redo.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Kept {
+pub(crate) struct History {
+    /// The version of the file's format.
     pathwarp: u32,
     #[serde(flatten)]
     pub(crate) now: Moment,
@@ -40,14 +41,14 @@ pub(crate) struct Kept {
     drawings: Vec<String>,
 }
 
-impl Kept {
+impl History {
     pub(crate) fn new(steps: Vec<PageStep>) -> Self {
         let now = Moment { steps, drawing: 0 };
         Self { pathwarp: VERSION, now, undo: Vec::new(), redo: Vec::new(), drawings: Vec::new() }
     }
 
-    /// Replaces the steps.
-    pub(crate) fn go_on(&mut self, steps: Vec<PageStep>) {
+    /// Replaces the steps, with an entry to undo.
+    pub(crate) fn push_steps(&mut self, steps: Vec<PageStep>) {
         let next = Moment { steps, ..self.now };
         self.undo.push(mem::replace(&mut self.now, next));
         if self.undo.len() > MOST_UNDO {
@@ -57,11 +58,11 @@ impl Kept {
     }
 
     /// Replaces the words: the drawing `old` by `new`, and the steps.
-    pub(crate) fn set_anew(&mut self, old: &str, new: String, steps: Vec<PageStep>) {
+    pub(crate) fn push_drawing(&mut self, old: &str, new: String, steps: Vec<PageStep>) {
         if self.drawings.is_empty() {
             self.drawings.push(old.to_owned());
         }
-        self.go_on(steps);
+        self.push_steps(steps);
         // Drop the drawings of changes that could be redone until now.
         self.drawings.truncate(self.now.drawing + 1);
         self.drawings.push(new);
@@ -99,21 +100,21 @@ pub(crate) struct Draft {
 
 impl Draft {
     /// Returns the draft of the drawing `file` with this content. Different contents have different drafts.
-    pub(crate) fn of(state: Option<&Path>, file: &Path, content: &[u8]) -> Self {
+    pub(crate) fn for_drawing(state: Option<&Path>, file: &Path, content: &[u8]) -> Self {
         let key = key(file, content);
         Self { path: state.map(|s| s.join("drafts").join(format!("{key}.json"))), key }
     }
 
     /// Reads the draft; `None` if there is none, or one of another version.
-    pub(crate) fn read(&self) -> Option<Kept> {
+    pub(crate) fn read(&self) -> Option<History> {
         let text = fs::read_to_string(self.path.as_ref()?).ok()?;
-        serde_json::from_str::<Kept>(&text).ok().filter(|k| k.pathwarp == VERSION)
+        serde_json::from_str::<History>(&text).ok().filter(|k| k.pathwarp == VERSION)
     }
 
-    /// Writes the steps.
-    pub(crate) fn keep(&self, host: &dyn Host, kept: &Kept) -> Result<(), String> {
+    /// Writes the steps and their history.
+    pub(crate) fn store(&self, host: &dyn Host, history: &History) -> Result<(), String> {
         let path = self.path.as_ref().ok_or(NO_FOLDER)?;
-        let text = serde_json::to_string(kept).map_err(|e| e.to_string())?;
+        let text = serde_json::to_string(history).map_err(|e| e.to_string())?;
         write(host, path, text.as_bytes())
     }
 
@@ -130,31 +131,29 @@ const MOST_FILES: usize = 100;
 
 /// Returns the folder for settings.
 pub(crate) fn settings() -> Option<PathBuf> {
-    of_user("XDG_CONFIG_HOME", ".config", "APPDATA")
+    user_folder("XDG_CONFIG_HOME", ".config", "APPDATA")
 }
 
 /// Returns the folder for state, which is kept from one run to the next.
 pub(crate) fn state() -> Option<PathBuf> {
-    of_user("XDG_STATE_HOME", ".local/state", "LOCALAPPDATA")
+    user_folder("XDG_STATE_HOME", ".local/state", "LOCALAPPDATA")
 }
 
-fn of_user(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
-    let folder = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
-    let folder = if cfg!(windows) {
-        folder(windows)?
-    } else {
-        folder(xdg).filter(|p| p.is_absolute()).or_else(|| Some(folder("HOME")?.join(below_home)))?
-    };
-    Some(folder.join("pathwarp"))
+/// Returns the folder `pathwarp` in the folder that an environment variable names: `windows` there, elsewhere `xdg` or below `HOME`.
+fn user_folder(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
+    let named = |variable: &str| std::env::var_os(variable).filter(|v| !v.is_empty()).map(PathBuf::from);
+    let xdg = || named(xdg).filter(|p| p.is_absolute()).or_else(|| Some(named("HOME")?.join(below_home)));
+    let folder = if cfg!(windows) { named(windows) } else { xdg() };
+    Some(folder?.join("pathwarp"))
 }
 
 /// Makes a name from a drawing's absolute path and `content`.
 pub(crate) fn key(drawing: &Path, content: &[u8]) -> String {
     let folder = drawing.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     // A drawing dropped on the page may not exist as a file here.
-    let here = || folder.canonicalize().unwrap_or_default().join(drawing.file_name().unwrap_or_default());
-    let place = drawing.canonicalize().unwrap_or_else(|_| here());
-    hex(&[place.as_os_str().as_encoded_bytes(), &[0], content])
+    let joined = || folder.canonicalize().unwrap_or_default().join(drawing.file_name().unwrap_or_default());
+    let path = drawing.canonicalize().unwrap_or_else(|_| joined());
+    hex(&[path.as_os_str().as_encoded_bytes(), &[0], content])
 }
 
 /// Returns the SHA-256 sum of pieces of text, in hexadecimal.
@@ -170,13 +169,14 @@ pub(crate) fn hex(pieces: &[&[u8]]) -> String {
 /// Writes a file that only the user may read. If it makes too many of them, the oldest are removed.
 pub(crate) fn write(host: &dyn Host, file: &Path, bytes: &[u8]) -> Result<(), String> {
     if !file.exists() {
-        create(file).map_err(|e| format!("{}: {e}", file.display()))?;
+        create_private(file).map_err(|e| format!("{}: {e}", file.display()))?;
     }
     // The file keeps its permissions.
     host.write(file, bytes)
 }
 
-fn create(file: &Path) -> io::Result<()> {
+/// Creates an empty file that only the user may read, and removes the oldest files in its folder.
+fn create_private(file: &Path) -> io::Result<()> {
     let folder = file.parent().unwrap_or(Path::new("."));
     let (mut folders, mut options) = (DirBuilder::new(), OpenOptions::new());
     #[cfg(unix)]

@@ -74,31 +74,6 @@ struct EditedArtwork {
 }
 
 impl EditedArtwork {
-    fn new(
-        svg: SvgArtwork,
-        shown: Option<SvgArtwork>,
-        given: Given,
-        options: CommonOptions,
-        file: &Path,
-        host: &EngineHost,
-    ) -> Self {
-        Self {
-            svg,
-            shown,
-            captioned: None,
-            light: None,
-            sketch: None,
-            registry: Arc::clone(&host.registry),
-            given,
-            options,
-            flags: Arc::clone(&host.flags),
-            names: Arc::clone(&host.names),
-            plugins: host.plugins.clone(),
-            file: file.to_owned(),
-            last_frame: None,
-        }
-    }
-
     fn folder(&self) -> &Path {
         self.file.parent().unwrap_or(Path::new(""))
     }
@@ -118,9 +93,9 @@ impl EditedArtwork {
         }
         let bitmap = page::Picture::bitmap(document.text(), PIXELS, reading);
         let (png, filled_box) = bitmap.map_err(Failure::Input)?;
-        let place = document.user_to_px().inverse().transform_rect_bbox(filled_box);
-        let boxed = |r: Rect| [r.x0, r.y0, r.width(), r.height()];
-        let ([x, y, width, height], page) = (boxed(place), boxed(document.view_box()).map(|v| v.to_string()).join(" "));
+        let image = document.user_to_px().inverse().transform_rect_bbox(filled_box);
+        let xywh = |r: Rect| [r.x0, r.y0, r.width(), r.height()];
+        let ([x, y, width, height], page) = (xywh(image), xywh(document.view_box()).map(|v| v.to_string()).join(" "));
         // Drafts draw one pixel for 4 px of the page in each direction, so this width keeps the resolution.
         let svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{page}\" width=\"{}\"><image preserveAspectRatio=\"none\" x=\"{x}\" \
@@ -172,7 +147,8 @@ impl EditedArtwork {
         work(&session, svg, ready)
     }
 
-    fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
+    /// Bends the version of the drawing that suits a picture of this quality.
+    fn bend_version(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
         let version = match fineness {
             Fineness::Small(_) => {
                 self.draw_sketch()?;
@@ -184,17 +160,17 @@ impl EditedArtwork {
             }
             Fineness::Exact => Version::Page,
         };
-        self.with_steps(recipe, version, |session, svg, ready| bent(session, svg, ready, recipe, fineness))
+        self.with_steps(recipe, version, |session, svg, ready| bend(session, svg, ready, recipe, fineness))
     }
 
     /// Returns the result as a file of this format; for a picture, as the SVG to draw it from.
-    fn finished(&mut self, recipe: &Recipe, format: Format, to: Destination) -> Result<Exported, Failure> {
+    fn exported(&mut self, recipe: &Recipe, format: Format, to: Destination) -> Result<Exported, Failure> {
         let folder = self.folder().to_owned();
         self.with_steps(recipe, Version::File, |session, svg, ready| {
             let embeds = matches!(format, Format::Svg | Format::Svgz);
             let text = || {
-                let (line, given) = on_a_line(recipe, session.given)?;
-                recipe_file::write(session.registry, &line, &given, &folder)
+                let (recipe, given) = for_command_line(recipe, session.given)?;
+                recipe_file::write(session.registry, &recipe, &given, &folder)
             };
             let embedded_recipe = embeds.then(text).transpose()?;
             let request = WarpRequest { recipe, embedded_recipe, ..session.request(svg, &ready)? };
@@ -215,10 +191,10 @@ impl EditedArtwork {
         stays: bool,
         picture: &PictureOptions,
     ) -> Result<(Vec<u8>, Vec<String>), Failure> {
-        let among: Vec<Format> = DRAWINGS.iter().chain(PICTURES).copied().collect();
-        let format = Choice { what: "a drawing is", among: &among }.format(Some(to), None)?;
+        let formats: Vec<Format> = DRAWINGS.iter().chain(PICTURES).copied().collect();
+        let format = Choice { what: "a drawing is", among: &formats }.format(Some(to), None)?;
         let destination = if stays { Destination::of(Some(to)) } else { Destination::Anywhere };
-        let Exported { bytes, mut warnings, kerf } = self.finished(recipe, format, destination)?;
+        let Exported { bytes, mut warnings, kerf } = self.exported(recipe, format, destination)?;
         warnings.extend(kerf.map(|k| k.note()));
         if !PICTURES.contains(&format) {
             return Ok((bytes, warnings));
@@ -232,42 +208,43 @@ impl EditedArtwork {
         Ok((encode(drawn, format, None)?, warnings))
     }
 
-    fn in_plain_words<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
+    /// Turns a failure into a sentence in the page's terms.
+    fn explained<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
         result.map_err(|f| self.names.plain(&f.message(&self.flags)))
     }
 }
 
 /// Turns the options that abbreviate edits into steps, as the page shows only these.
-fn put_edits(saved: &mut SavedRecipe) -> Result<(), Failure> {
+fn edits_to_steps(saved: &mut SavedRecipe) -> Result<(), Failure> {
     let mut edits = saved.options.read()?.edits;
     ["simplify", "outset"].iter().for_each(|name| drop(saved.options.take(name)));
     let exclude = saved.recipe.steps.first().map(|s| s.exclude.clone()).unwrap_or_default();
     edits.iter_mut().for_each(|s| s.exclude.clone_from(&exclude));
     // Words without steps are saved with a step that moves nothing; earlier versions did so for edits.
-    let is_still = |s: &Step| *s == Step { exclude: exclude.clone(), ..Step::new("affine", Args::new()) };
-    let is_alone = matches!(&*saved.recipe.steps, [only] if is_still(only));
-    saved.recipe.steps.splice(0..usize::from(is_alone), edits);
+    let is_identity = |s: &Step| *s == Step { exclude: exclude.clone(), ..Step::new("affine", Args::new()) };
+    let only_identity = matches!(&*saved.recipe.steps, [only] if is_identity(only));
+    saved.recipe.steps.splice(0..usize::from(only_identity), edits);
     Ok(())
 }
 
 /// The selector of the whole drawing.
-const WHOLE: &str = "svg";
+const WHOLE_DRAWING: &str = "svg";
 
 /// Adapts a recipe to a command line: an only step's selection becomes an option; in a chain with selections, other steps select all.
-fn on_a_line(recipe: &Recipe, given: &Given) -> Result<(Recipe, Given), Failure> {
+fn for_command_line(recipe: &Recipe, given: &Given) -> Result<(Recipe, Given), Failure> {
     let (mut recipe, mut given) = (recipe.clone(), given.clone());
     if let [step] = &mut *recipe.steps {
-        for (option, of) in OF_STEPS {
-            std::mem::take(of(step)).iter().try_for_each(|s| given.set(option, s)).map_err(Failure::Usage)?;
+        for (option, selectors) in OF_STEPS {
+            std::mem::take(selectors(step)).iter().try_for_each(|s| given.set(option, s)).map_err(Failure::Usage)?;
         }
     } else if recipe.steps.iter().any(|s| !s.select.is_empty()) {
-        recipe.steps.iter_mut().filter(|s| s.select.is_empty()).for_each(|s| s.select.push(WHOLE.into()));
+        recipe.steps.iter_mut().filter(|s| s.select.is_empty()).for_each(|s| s.select.push(WHOLE_DRAWING.into()));
     }
     Ok((recipe, given))
 }
 
 /// Bends the drawing by these steps; `given` has them with their references.
-fn bent(
+fn bend(
     session: &Session<'_>,
     svg: &SvgArtwork,
     ready: Ready,
@@ -291,18 +268,19 @@ fn bent(
     let Ready { recipe: resolved, built, .. } = ready;
     let shapes = &warped.shapes;
     let fold = |s: &ReportedShape| s.fold.at.map(|at| (s.shape.id.clone(), at));
-    let bent = [0, 1].map(|i| shapes.iter().map(|s| [s.shape.path.segments_in, s.shape.path.segments_out][i]).sum());
-    // Edits come before bending.
-    let edited = edited.unwrap_or(bent);
+    let [bent_in, bent_out] =
+        [0, 1].map(|i| shapes.iter().map(|s| [s.shape.path.segments_in, s.shape.path.segments_out][i]).sum());
+    // Edits change the drawing before it is bent.
+    let [segments_in, edited_out] = edited.unwrap_or([bent_in, bent_out]);
     let summary = Summary {
-        segments_in: edited[0],
-        segments_out: if shapes.is_empty() { edited[1] } else { bent[1] },
+        segments_in,
+        segments_out: if shapes.is_empty() { edited_out } else { bent_out },
         max_error: shapes.iter().map(|s| s.shape.path.max_error).fold(0.0, f64::max),
         tolerance,
         folds: shapes.iter().filter_map(fold).collect(),
     };
-    let warnings_of_steps = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
-    let mut warnings: Vec<String> = warnings_of_steps.cloned().chain(warped.warnings).collect();
+    let of_steps = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
+    let mut warnings: Vec<String> = of_steps.cloned().chain(warped.warnings).collect();
     warnings.extend(warped.page.arrivals.iter().map(ToString::to_string));
     warnings.extend(warped.skipped.iter().map(ToString::to_string));
     let page = warped.page.change.map(|[_, after]| after);
@@ -321,9 +299,9 @@ impl Artwork for EditedArtwork {
         if captions.is_empty() {
             return Ok(self.svg.document());
         }
-        if self.captioned.as_ref().is_none_or(|(of, _)| *of != captions) {
+        if self.captioned.as_ref().is_none_or(|(known, _)| *known != captions) {
             let set = captioned(self.svg.document(), &captions, self.svg.reading(), &self.options);
-            let (document, _) = self.in_plain_words(set)?;
+            let (document, _) = self.explained(set)?;
             self.captioned = Some((captions, document));
         }
         Ok(match &mut self.captioned {
@@ -349,8 +327,8 @@ impl Artwork for EditedArtwork {
     }
 
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
-        let bent = self.bent(recipe, fineness);
-        let mut bent = self.in_plain_words(bent)?;
+        let bent = self.bend_version(recipe, fineness);
+        let mut bent = self.explained(bent)?;
         bent.warnings.iter_mut().for_each(|w| *w = self.names.plain(w));
         Ok(bent)
     }
@@ -363,13 +341,13 @@ impl Artwork for EditedArtwork {
         picture: &PictureOptions,
     ) -> Result<(Vec<u8>, Vec<String>), String> {
         let written = Self::written(self, recipe, to, stays, picture);
-        let (bytes, warnings) = self.in_plain_words(written)?;
+        let (bytes, warnings) = self.explained(written)?;
         Ok((bytes, warnings.iter().map(|w| self.names.plain(w)).collect()))
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
         let settled = self.with_steps(recipe, Version::File, |_, _, ready| Ok((ready.recipe, ready.built.whole)));
-        self.in_plain_words(settled)
+        self.explained(settled)
     }
 
     fn options(&self) -> Vec<(String, String)> {
@@ -379,8 +357,8 @@ impl Artwork for EditedArtwork {
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
-        let (recipe, given) = self.in_plain_words(on_a_line(recipe, &self.given))?;
-        self.in_plain_words(recipe_file::write(&*self.registry, &recipe, &given, self.folder()))
+        let (recipe, given) = self.explained(for_command_line(recipe, &self.given))?;
+        self.explained(recipe_file::write(&*self.registry, &recipe, &given, self.folder()))
     }
 }
 
@@ -437,10 +415,10 @@ impl EngineHost {
         let (recipe, given) = match saved {
             Some(mut saved) => {
                 if let [step] = &mut *saved.recipe.steps {
-                    OF_STEPS.iter().for_each(|(option, of)| of(step).extend(saved.options.take(option)));
+                    OF_STEPS.iter().for_each(|(option, selectors)| selectors(step).extend(saved.options.take(option)));
                 }
-                saved.recipe.steps.iter_mut().filter(|s| s.select == [WHOLE]).for_each(|s| s.select.clear());
-                put_edits(&mut saved)?;
+                saved.recipe.steps.iter_mut().filter(|s| s.select == [WHOLE_DRAWING]).for_each(|s| s.select.clear());
+                edits_to_steps(&mut saved)?;
                 (saved.recipe, self.usual.overridden_by(&saved.options).overridden_by(&self.given))
             }
             None => (Recipe::default(), self.usual.overridden_by(&self.given)),
@@ -449,11 +427,26 @@ impl EngineHost {
         let svg = SvgArtwork::read(source, file, &options, None)?;
         let named = svg.document().with_ids();
         let shown = (named != svg.document().text()).then(|| SvgArtwork::read(named.as_bytes(), file, &options, None));
-        let artwork = EditedArtwork::new(svg, shown.transpose()?, given, options, file, self);
+        let artwork = EditedArtwork {
+            svg,
+            shown: shown.transpose()?,
+            captioned: None,
+            light: None,
+            sketch: None,
+            registry: Arc::clone(&self.registry),
+            given,
+            options,
+            flags: Arc::clone(&self.flags),
+            names: Arc::clone(&self.names),
+            plugins: self.plugins.clone(),
+            file: file.to_owned(),
+            last_frame: None,
+        };
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 
-    fn in_plain_words<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
+    /// Turns a failure into a sentence in the page's terms.
+    fn explained<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
         result.map_err(|f| self.names.plain(&f.message(&self.flags)))
     }
 }
@@ -474,18 +467,18 @@ impl Host for EngineHost {
     }
 
     fn families(&self) -> Result<Vec<String>, String> {
-        self.in_plain_words(self.given.read().map(|o| families(&o.reading.read_options())))
+        self.explained(self.given.read().map(|o| families(&o.reading.read_options())))
     }
 
     fn set_words(&self, words: &Words) -> Result<(String, Vec<char>), String> {
         let letter_spacing = 0.01 * words.spacing * words.size;
         let style = TextStyle { size: words.size, letter_spacing, ..TextStyle::default() };
         let set = |options: CommonOptions| set_plainly(&words.text, words.font.as_deref(), &style, &options.reading);
-        self.in_plain_words(self.given.read().and_then(set))
+        self.explained(self.given.read().and_then(set))
     }
 
     fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String> {
-        self.in_plain_words(self.open_drawing(file, bytes))
+        self.explained(self.open_drawing(file, bytes))
     }
 
     fn reference(&self, file: &Path) -> String {
@@ -493,7 +486,7 @@ impl Host for EngineHost {
     }
 
     fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String> {
-        self.in_plain_words(PendingFile::new(to, bytes).and_then(|file| PendingFile::commit_all(vec![file])))
+        self.explained(PendingFile::new(to, bytes).and_then(|file| PendingFile::commit_all(vec![file])))
     }
 }
 
@@ -509,7 +502,7 @@ mod tests {
                 "pathwarp = 1\n[options]\noutset = \"-1%\"\nsimplify = \"0.2mm\"\n[[step]]\n{step}\nexclude = [\"#a\"]"
             );
             let mut saved = recipe_file::from_text(&Registry::builtin(), &text, Path::new(""), false).unwrap();
-            put_edits(&mut saved).unwrap();
+            edits_to_steps(&mut saved).unwrap();
             assert!(saved.options.read().unwrap().edits.is_empty());
             assert!(saved.recipe.steps.iter().all(|s| s.exclude == ["#a"]));
             let all = saved.recipe.steps.into_iter().map(|s| (s.deformation, s.args));

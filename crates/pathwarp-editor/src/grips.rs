@@ -1,4 +1,4 @@
-//! The handles of a step's parameters, in user units: paths, points, pairs of points and nets.
+//! The geometry from which the page makes the handles of a step's parameters (grips), in user units: paths, points, pairs of points, nets.
 //!
 //! The kind of a parameter and, for text, its notation determine its handles; therefore plug-ins have handles, too.
 
@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
 /// Distance within which cubics follow the arcs of a handle path, as a share of the frame's diagonal.
-const ARCS_WITHIN: f64 = 1e-6;
+const ARC_TOLERANCE: f64 = 1e-6;
 /// Most control points of a net with handles; more could not be told apart.
 const MOST_NODES: usize = 400;
 
@@ -25,20 +25,20 @@ const TRIANGLE: &str = "I,J,K:X,Y";
 /// The notation for adjust values of text shapes.
 const ADJUST: &str = "[NAME=]VALUE";
 
-/// Returns the handles of every step.
+/// Returns the grips of every step, by parameter, with the step's frame.
 pub(crate) fn grips(registry: &Registry, resolved: &Recipe, built: &BuiltRecipe) -> Vec<Value> {
     let steps = resolved.steps.iter().zip(&built.frames);
     let steps = steps.map(|(step, frame)| {
         let info = registry.get(&step.deformation).map(|e| e.info());
-        let params = info.map_or_else(Map::new, |info| of_step(info, &step.args, frame));
+        let params = info.map_or_else(Map::new, |info| params_grips(info, &step.args, frame));
         json!({ "frame": rect(frame.rect), "params": params })
     });
     steps.collect()
 }
 
-/// Returns the handles of a caption in this frame.
-pub(crate) fn of_caption(args: &Args, frame: &Frame) -> Value {
-    json!({ "frame": rect(frame.rect), "params": of_step(&CAPTION, args, frame) })
+/// Returns the grips of a caption in this frame.
+pub(crate) fn caption_grips(args: &Args, frame: &Frame) -> Value {
+    json!({ "frame": rect(frame.rect), "params": params_grips(&CAPTION, args, frame) })
 }
 
 /// Returns a box as x, y, width and height.
@@ -46,19 +46,15 @@ pub(crate) fn rect(r: Rect) -> Value {
     json!([r.x0, r.y0, r.width(), r.height()])
 }
 
-fn of_step(info: &Info, args: &Args, frame: &Frame) -> Map<String, Value> {
+fn params_grips(info: &Info, args: &Args, frame: &Frame) -> Map<String, Value> {
     let mut out = Map::new();
     // Wrong values have been reported when the step was built.
     let Ok(settings) = Settings::new(info.params, args, frame) else { return out };
-    for p in info.params {
-        if let Some(geometry) = of_param(info, p, &settings) {
-            out.insert(p.name.to_owned(), geometry);
-        }
-    }
+    out.extend(info.params.iter().filter_map(|p| Some((p.name.to_owned(), param_grip(info, p, &settings)?))));
     out
 }
 
-fn of_param(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
+fn param_grip(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
     match p.kind {
         Kind::Point if s.given(p.name) || p.default.is_some() => Some(json!({ "point": xy(s.point(p.name).ok()?) })),
         Kind::Path => {
@@ -70,7 +66,7 @@ fn of_param(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
                 return Some(json!({ "circle": circle }));
             }
             let diagonal = s.frame().extent(Axis::Diagonal);
-            let all: Vec<Value> = paths.iter().map(|named| path(&named.outline, ARCS_WITHIN * diagonal)).collect();
+            let all: Vec<Value> = paths.iter().map(|named| path(&named.outline, ARC_TOLERANCE * diagonal)).collect();
             (!all.is_empty()).then(|| json!({ "paths": all }))
         }
         Kind::Length(_) | Kind::Number | Kind::Angle | Kind::Count => {
@@ -89,17 +85,17 @@ fn of_param(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
         }
         Kind::Text("SURFACE" | "SHAPE") => {
             let text = s.texts(p.name).pop()?;
-            let word = |w: &str| {
+            let size = |w: &str| {
                 let (name, value) = w.split_once('=')?;
                 Some(json!([name.trim(), s.length_in(p.name, value.trim(), Axis::X).ok()?]))
             };
-            let sizes: Vec<Value> = text.split_once(':')?.1.split(',').filter_map(word).collect();
+            let sizes: Vec<Value> = text.split_once(':')?.1.split(',').filter_map(size).collect();
             Some(json!({ "surface": { "text": text, "sizes": sizes } }))
         }
         Kind::Text(ADJUST) => {
             let shape = TextShape::named(s.texts(info.gallery?.presets).last()?)?;
-            let of = |(name, range, default): (&str, RangeInclusive<f64>, f64)| json!({ "name": name, "least": range.start(), "most": range.end(), "default": default });
-            Some(json!({ "adjust": shape.adjust_values().map(of).collect::<Vec<_>>() }))
+            let described = |(name, range, default): (&str, RangeInclusive<f64>, f64)| json!({ "name": name, "least": range.start(), "most": range.end(), "default": default });
+            Some(json!({ "adjust": shape.adjust_values().map(described).collect::<Vec<_>>() }))
         }
         Kind::Text(GRID | TRIANGLE) => {
             let Net { names, points, lines, .. } = net(info, p, s)?;
@@ -110,6 +106,7 @@ fn of_param(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
     }
 }
 
+/// Returns the values of a parameter, which each may hold several words.
 fn words<'a>(s: &Settings<'a>, p: &Param) -> impl Iterator<Item = &'a str> {
     s.texts(p.name).into_iter().flat_map(str::split_whitespace)
 }
@@ -120,23 +117,24 @@ fn xy(p: Point) -> Value {
 
 /// Describes a circle or arc: its centre, radius, and start and end angles in degrees, clockwise on the screen from the right.
 fn circle(outline: &Outline) -> Option<[f64; 5]> {
-    let [only] = outline.subpaths.as_slice() else { return None };
+    let [subpath] = outline.subpaths.as_slice() else { return None };
     let arc = |s: &Seg| if let Seg::Arc(arc) = s { Some(*arc) } else { None };
-    let arcs = only.segs.iter().map(arc).collect::<Option<Vec<_>>>()?;
+    let arcs = subpath.segs.iter().map(arc).collect::<Option<Vec<_>>>()?;
     let first = arcs.first()?;
-    let from = (only.start - first.center).atan2().to_degrees();
+    let start = (subpath.start - first.center).atan2().to_degrees();
+    // The semi-axes a and b determine the direction of an arc's sweep.
     let sweep: f64 = arcs.iter().map(|a| a.sweep * a.a.cross(a.b).signum()).sum();
-    Some([first.center.x, first.center.y, first.a.hypot(), from, from + sweep.to_degrees()])
+    Some([first.center.x, first.center.y, first.a.hypot(), start, start + sweep.to_degrees()])
 }
 
 /// Converts a path to subpaths: the start, and then six numbers for a cubic or two for a line.
-fn path(outline: &Outline, arcs_within: f64) -> Value {
+fn path(outline: &Outline, arc_tolerance: f64) -> Value {
     let subpath = |s: &pathwarp::Subpath| {
         let mut segments: Vec<Value> = Vec::new();
         for seg in &s.segs {
             match seg {
                 Seg::Line(l) => segments.push(xy(l.p1)),
-                Seg::Arc(arc) => arc.to_cubics(arcs_within).for_each(|c| segments.push(cubic(c.p1, c.p2, c.p3))),
+                Seg::Arc(arc) => arc.to_cubics(arc_tolerance).for_each(|c| segments.push(cubic(c.p1, c.p2, c.p3))),
                 other => {
                     let c = other.to_cubic();
                     segments.push(cubic(c.p1, c.p2, c.p3));
@@ -188,27 +186,28 @@ fn net(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Net> {
         return None;
     }
     let mut net = if p.kind == Kind::Text(TRIANGLE) { triangle(s)? } else { grid(s, &has)? };
-    let each =
+    let Net { names, points, weights, .. } = &mut net;
+    let words_of =
         |name: &str| if has(name) { s.texts(name) } else { Vec::new() }.into_iter().flat_map(str::split_whitespace);
-    let names = net.names.clone();
-    let index = |word: &str| {
-        let (name, rest) = word.split_once(':')?;
-        Some((names.iter().position(|n| n == name.trim())?, rest.to_owned()))
+    // Splits `INDICES:VALUE`, and finds the control point.
+    let index_and_value = |word: &'_ str| {
+        let (name, value) = word.split_once(':')?;
+        Some((names.iter().position(|n| n == name.trim())?, value.to_owned()))
     };
     for word in words(s, p) {
-        let (i, rest) = index(word)?;
-        *net.points.get_mut(i)? = s.point_in(p.name, &rest).ok()?;
+        let (i, value) = index_and_value(word)?;
+        *points.get_mut(i)? = s.point_in(p.name, &value).ok()?;
     }
-    for word in each("move") {
-        let (i, rest) = index(word)?;
-        let (x, y) = rest.split_once(',')?;
-        let point = net.points.get_mut(i)?;
+    for word in words_of("move") {
+        let (i, value) = index_and_value(word)?;
+        let (x, y) = value.split_once(',')?;
+        let point = points.get_mut(i)?;
         point.x += s.length_in("move", x, Axis::X).ok()?;
         point.y += s.length_in("move", y, Axis::Y).ok()?;
     }
-    for word in each("weight") {
-        let (i, rest) = index(word)?;
-        *net.weights.get_mut(i)? = rest.trim().parse().ok()?;
+    for word in words_of("weight") {
+        let (i, value) = index_and_value(word)?;
+        *weights.get_mut(i)? = value.trim().parse().ok()?;
     }
     Some(net)
 }
@@ -220,18 +219,24 @@ pub(crate) fn net_of<'a>(info: &'a Info, args: &Args, frame: &Frame) -> Option<(
 }
 
 /// Returns values for the parameter that moves control points, and for `weight`, with which the net of `new` bends like that of `old`.
-pub(crate) fn with_net_of(info: &Info, old: &Args, new: &Args, frame: &Frame) -> Option<Vec<(String, Vec<String>)>> {
+pub(crate) fn carried_net_values(
+    info: &Info,
+    old: &Args,
+    new: &Args,
+    frame: &Frame,
+) -> Option<Vec<(String, Vec<String>)>> {
     let (_, old) = net_of(info, old, frame)?;
     let (p, mut net) = net_of(info, new, frame)?;
-    let rest = net.points.clone();
+    let undistorted = net.points.clone();
     nets::carry_over(&old, &mut net);
     let r = frame.rect;
-    let at = |p: Point| format!("{:.6}%,{:.6}%", 100.0 * (p.x - r.x0) / r.width(), 100.0 * (p.y - r.y0) / r.height());
-    let named = || net.names.iter().zip(net.points.iter().zip(&rest));
-    let placed = named().filter(|(_, (p, rest))| p != rest).map(|(name, (p, _))| format!("{name}:{}", at(*p)));
-    let weighted =
-        net.names.iter().zip(&net.weights).filter(|(_, w)| **w != 1.0).map(|(name, w)| format!("{name}:{w}"));
-    Some(vec![(p.name.to_owned(), placed.collect()), ("weight".to_owned(), weighted.collect())])
+    let percent =
+        |p: Point| format!("{:.6}%,{:.6}%", 100.0 * (p.x - r.x0) / r.width(), 100.0 * (p.y - r.y0) / r.height());
+    let points = net.names.iter().zip(net.points.iter().zip(&undistorted)).filter(|(_, (p, rest))| p != rest);
+    let points = points.map(|(name, (p, _))| format!("{name}:{}", percent(*p))).collect();
+    let weights = net.names.iter().zip(&net.weights).filter(|(_, w)| **w != 1.0);
+    let weights = weights.map(|(name, w)| format!("{name}:{w}")).collect();
+    Some(vec![(p.name.to_owned(), points), ("weight".to_owned(), weights)])
 }
 
 /// Returns the undistorted grid over the region.
@@ -254,14 +259,14 @@ fn grid(s: &Settings<'_>, has: &dyn Fn(&str) -> bool) -> Option<Net> {
         return None;
     }
     let region = if has("region") { s.rect_if("region").ok()?.unwrap_or(s.frame().rect) } else { s.frame().rect };
-    let all = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
-    let rest = Lattice::regular(region, degree, cells);
+    let indices = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
+    let lattice = Lattice::regular(region, degree, cells);
     let across = (0..rows).map(|j| (0..columns).map(|i| j * columns + i).collect());
     let down = (0..columns).map(|i| (0..rows).map(|j| j * columns + i).collect());
     Some(Net {
         space: Space::Grid { degree, cells },
-        names: all.clone().map(|(i, j)| format!("{i},{j}")).collect(),
-        points: all.map(|(i, j)| rest.regular_point(i, j)).collect(),
+        names: indices.clone().map(|(i, j)| format!("{i},{j}")).collect(),
+        points: indices.map(|(i, j)| lattice.regular_point(i, j)).collect(),
         weights: vec![1.0; columns * rows],
         lines: across.chain(down).collect(),
     })
@@ -286,19 +291,19 @@ fn triangle(s: &Settings<'_>) -> Option<Net> {
     if n == 0 || n > MOST_NODES {
         return None;
     }
-    let all: Vec<[usize; 3]> = nets::indices(n).collect();
-    let place = |[i, j, k]: &[usize; 3]| {
+    let indices: Vec<[usize; 3]> = nets::indices(n).collect();
+    let point = |[i, j, k]: &[usize; 3]| {
         let sum = a.to_vec2() * *i as f64 + b.to_vec2() * *j as f64 + c.to_vec2() * *k as f64;
         (sum / n as f64).to_point()
     };
     // Lines along each side: points with equal index of the opposite corner.
-    let line = |axis: usize, m: usize| (0..all.len()).filter(|p| all[*p][axis] == m).collect::<Vec<_>>();
+    let line = |axis: usize, m: usize| (0..indices.len()).filter(|p| indices[*p][axis] == m).collect::<Vec<_>>();
     let lines = (0..3).flat_map(|axis| (0..n).map(move |m| (axis, m))).map(|(axis, m)| line(axis, m));
     Some(Net {
         space: Space::Triangle(n),
-        weights: vec![1.0; all.len()],
-        names: all.iter().map(|[i, j, k]| format!("{i},{j},{k}")).collect(),
-        points: all.iter().map(place).collect(),
+        weights: vec![1.0; indices.len()],
+        names: indices.iter().map(|[i, j, k]| format!("{i},{j},{k}")).collect(),
+        points: indices.iter().map(point).collect(),
         lines: lines.collect(),
     })
 }
@@ -311,7 +316,7 @@ mod tests {
 
     fn of(name: &str, pairs: &[(&str, &str)]) -> Map<String, Value> {
         let frame = Frame::new(Rect::new(0.0, 0.0, 90.0, 60.0));
-        of_step(Registry::builtin().get(name).unwrap().info(), &Args::from_pairs(pairs), &frame)
+        params_grips(Registry::builtin().get(name).unwrap().info(), &Args::from_pairs(pairs), &frame)
     }
 
     #[test]
@@ -365,7 +370,7 @@ mod tests {
         let registry = Registry::builtin();
         let info = registry.get(name).unwrap().info();
         let (old, mut new) = (Args::from_pairs(before), Args::from_pairs(after));
-        let values = with_net_of(info, &old, &new, &Frame::new(FRAME)).unwrap();
+        let values = carried_net_values(info, &old, &new, &Frame::new(FRAME)).unwrap();
         for (name, values) in values {
             new.set(&name, values);
         }

@@ -46,14 +46,10 @@ pub trait Host: Send + Sync {
     fn registry(&self) -> &Registry;
 
     /// Returns the edits, which change a drawing before it is bent and therefore come before all other steps.
-    fn first(&self) -> &[Info] {
-        &[]
-    }
+    fn first(&self) -> &[Info];
 
     /// Returns names of deformations in other programs, which users may search for, each with the deformation's name.
-    fn foreign_words(&self) -> Vec<(&str, &str)> {
-        Vec::new()
-    }
+    fn foreign_words(&self) -> Vec<(&str, &str)>;
 
     /// Returns the families of the available fonts.
     ///

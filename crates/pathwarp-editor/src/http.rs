@@ -53,14 +53,12 @@ pub(crate) fn answer(mut stream: TcpStream, guard: &Guard) -> io::Result<Option<
     }
     // A page that has lost the server asks for this proof, a hash of the token and its question: another program may listen here now.
     if path == "/proof" {
-        respond(&mut stream, "200 OK", "text/plain", &guard.proof(query))?;
-        return Ok(None);
+        return respond(&mut stream, "200 OK", "text/plain", &guard.proof(query));
     }
     match ASSETS.iter().find(|a| a.path == path) {
-        Some(asset) => respond(&mut stream, "200 OK", asset.kind, asset.text)?,
-        None => return refuse(&mut stream, "404 Not Found", "there is no such page"),
+        Some(asset) => respond(&mut stream, "200 OK", asset.kind, asset.text),
+        None => refuse(&mut stream, "404 Not Found", "there is no such page"),
     }
-    Ok(None)
 }
 
 fn explain(refusal: Refusal) -> &'static str {
@@ -110,11 +108,11 @@ fn parse(head: &[u8]) -> Option<Option<Request<()>>> {
 }
 
 fn refuse(stream: &mut TcpStream, status: &str, why: &str) -> io::Result<Option<TcpStream>> {
-    respond(stream, status, "text/plain; charset=utf-8", &format!("{why}\n"))?;
-    Ok(None)
+    respond(stream, status, "text/plain; charset=utf-8", &format!("{why}\n"))
 }
 
-fn respond(stream: &mut TcpStream, status: &str, kind: &str, text: &str) -> io::Result<()> {
+/// Writes an answer that ends the connection, which is therefore not returned.
+fn respond(stream: &mut TcpStream, status: &str, kind: &str, text: &str) -> io::Result<Option<TcpStream>> {
     let length = text.len();
     let head = format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nContent-Security-Policy: {POLICY}\r\n\
@@ -123,7 +121,8 @@ fn respond(stream: &mut TcpStream, status: &str, kind: &str, text: &str) -> io::
     );
     stream.write_all(head.as_bytes())?;
     stream.write_all(text.as_bytes())?;
-    stream.flush()
+    stream.flush()?;
+    Ok(None)
 }
 
 /// A file of the page.

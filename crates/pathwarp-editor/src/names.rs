@@ -27,13 +27,13 @@ impl Names {
 
     /// Removes options from a message: those of parameters become names of controls, and advice about others is dropped.
     pub(crate) fn plain(&self, message: &str) -> String {
-        let parts: Vec<String> = message.split("; ").filter_map(|part| self.part(part)).collect();
-        if parts.is_empty() { self.named(message, true) } else { parts.join("; ") }
+        let parts: Vec<String> = message.split("; ").filter_map(|part| self.without_options(part)).collect();
+        if parts.is_empty() { self.with_controls(message, true) } else { parts.join("; ") }
     }
 
     /// Converts a part of a message, between semicolons; `None` if nothing is left of it.
-    fn part(&self, text: &str) -> Option<String> {
-        let mut text = self.named(text, false);
+    fn without_options(&self, text: &str) -> Option<String> {
+        let mut text = self.with_controls(text, false);
         while let Some(option) = option(&text, 0) {
             let (before, after) = (&text[..option.start], &text[option.end..]);
             if let (Some(open), Some(close)) = (before.rfind(" ("), after.find(')')) {
@@ -47,9 +47,9 @@ impl Names {
     }
 
     /// Replaces options by names of controls: options of parameters, or all.
-    fn named(&self, text: &str, all: bool) -> String {
+    fn with_controls(&self, text: &str, all: bool) -> String {
         let (mut out, mut done) = (String::with_capacity(text.len()), 0);
-        // Quotes delimit options; around names of controls they are dropped.
+        // `true` after a name of a control instead of a quoted option, whose closing quote is dropped.
         let mut quoted = false;
         let between = |text: &str, quoted: bool| if quoted { text.replacen('`', "", 1) } else { text.to_owned() };
         while let Some(range) = option(text, done) {

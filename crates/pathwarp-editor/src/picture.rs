@@ -26,7 +26,7 @@ pub(crate) struct Picture {
 
 impl Picture {
     /// Resolves a drawing. Coordinates get this number of decimals, in px.
-    pub(crate) fn of(svg: &str, decimals: u8, reading: &ReadOptions) -> Result<Self, String> {
+    pub(crate) fn from_svg(svg: &str, decimals: u8, reading: &ReadOptions) -> Result<Self, String> {
         let tree = resolved(svg, reading)?;
         let options = WriteOptions {
             id_prefix: Some(ID_PREFIX.into()),
@@ -39,16 +39,16 @@ impl Picture {
     }
 
     /// Returns the text of a drawing as SVG whose page is the box of its content.
-    pub(crate) fn small(svg: &str, reading: &ReadOptions) -> Result<String, String> {
+    pub(crate) fn thumbnail(svg: &str, reading: &ReadOptions) -> Result<String, String> {
         /// Margin around the content, as a share of its size.
         const MARGIN: f64 = 0.02;
         let tree = resolved(svg, reading)?;
-        let seen = seen(&tree, svg.len())?;
-        let margin = MARGIN * seen.width().max(seen.height());
+        let content = content_box(&tree, svg.len())?;
+        let margin = MARGIN * content.width().max(content.height());
         let options = WriteOptions { coordinates_precision: 2, indent: Indent::Spaces(0), ..WriteOptions::default() };
         let text = well_formed(&tree.to_string(&options));
         let (_, rest) = text.split_once('>').ok_or("the drawing has no root")?;
-        let page = seen.inflate(margin, margin);
+        let page = content.inflate(margin, margin);
         let (width, height) = (page.width(), page.height());
         Ok(format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
@@ -59,8 +59,8 @@ impl Picture {
 
     /// Draws the content of a drawing as a PNG whose longer side has `longest` pixels. Also returns the box that the PNG fills, in px.
     pub(crate) fn bitmap(svg: &str, longest: f32, reading: &ReadOptions) -> Result<(Vec<u8>, Rect), String> {
-        let (drawn, filled) = drawn(resolved(svg, reading)?.as_ref(), longest, svg.len())?;
-        Ok((encode_png(&drawn).map_err(|e| e.to_string())?, filled))
+        let (pixmap, filled) = render_content(resolved(svg, reading)?.as_ref(), longest, svg.len())?;
+        Ok((encode_png(&pixmap).map_err(|e| e.to_string())?, filled))
     }
 
     /// Returns the whole text.
@@ -155,19 +155,19 @@ pub(crate) fn lightened(svg: &str, reading: &ReadOptions) -> Option<String> {
 
 /// Draws the content of a drawing with `longest` pixels on the longer side. Also returns the box that the pixels fill, in px. `length` is
 /// the length of the drawing's text. The renderer moves the corner of the box to the origin.
-fn drawn(tree: &usvg::Tree, longest: f32, length: usize) -> Result<(Pixmap, Rect), String> {
-    let seen = tree.root().abs_layer_bounding_box();
-    let scale = longest / seen.width().max(seen.height());
-    let size = [seen.width(), seen.height()].map(|side| f64::from((side * scale).ceil().max(1.0)));
+fn render_content(tree: &usvg::Tree, longest: f32, length: usize) -> Result<(Pixmap, Rect), String> {
+    let content = tree.root().abs_layer_bounding_box();
+    let scale = longest / content.width().max(content.height());
+    let size = [content.width(), content.height()].map(|side| f64::from((side * scale).ceil().max(1.0)));
     let budget = Budget::new(Limits::default().for_input(length));
-    let drawn = render_group(tree.root(), Transform::from_scale(scale, scale), size, &budget);
-    let drawn = drawn.map_err(|e| e.to_string())?.ok_or("the drawing shows nothing")?;
-    let corner = Point::new(seen.x().into(), seen.y().into());
-    Ok((drawn, Rect::from_origin_size(corner, Size::new(size[0], size[1]) / f64::from(scale))))
+    let pixmap = render_group(tree.root(), Transform::from_scale(scale, scale), size, &budget);
+    let pixmap = pixmap.map_err(|e| e.to_string())?.ok_or("the drawing shows nothing")?;
+    let corner = Point::new(content.x().into(), content.y().into());
+    Ok((pixmap, Rect::from_origin_size(corner, Size::new(size[0], size[1]) / f64::from(scale))))
 }
 
 /// Returns the box of a drawing's content in px, without the transparent pixels at the edges of bent bitmaps.
-fn seen(tree: &usvg::Tree, length: usize) -> Result<Rect, String> {
+fn content_box(tree: &usvg::Tree, length: usize) -> Result<Rect, String> {
     /// Longer side of the bitmap in which transparent edges are searched for, in pixels.
     const PIXELS: f32 = 128.0;
     let all = tree.root().abs_layer_bounding_box();
@@ -175,13 +175,13 @@ fn seen(tree: &usvg::Tree, length: usize) -> Result<Rect, String> {
     if !tree.root().children().iter().any(has_image) {
         return Ok(all);
     }
-    let (drawn, filled) = drawn(tree, PIXELS, length)?;
-    let pixel = filled.width() / f64::from(drawn.width());
-    let opaque = (0..).zip(drawn.pixels()).filter(|(_, p)| p.alpha() > 0).map(|(i, _)| {
-        let [x, y] = [i % drawn.width(), i / drawn.width()].map(|n| pixel * f64::from(n));
+    let (pixmap, filled) = render_content(tree, PIXELS, length)?;
+    let pixel = filled.width() / f64::from(pixmap.width());
+    let visible = (0..).zip(pixmap.pixels()).filter(|(_, p)| p.alpha() > 0).map(|(i, _)| {
+        let [x, y] = [i % pixmap.width(), i / pixmap.width()].map(|n| pixel * f64::from(n));
         Rect::from_origin_size(filled.origin() + Vec2::new(x, y), Size::new(pixel, pixel))
     });
-    Ok(opaque.reduce(|a, b| a.union(b)).map_or(all, |r| r.intersect(all)))
+    Ok(visible.reduce(|a, b| a.union(b)).map_or(all, |r| r.intersect(all)))
 }
 
 fn has_image(node: &Node) -> bool {
@@ -212,7 +212,7 @@ fn well_formed(text: &str) -> String {
     out + &text[done..]
 }
 
-/// Returns the range of the path data in a line.
+/// Returns the range of the path data in a line of a picture, which holds one element.
 fn data_range(line: &str) -> Option<Range<usize>> {
     const NAME: &str = " d=\"";
     let start = line.starts_with("<path ").then(|| line.find(NAME)).flatten()? + NAME.len();
@@ -252,22 +252,23 @@ const ROUNDING: f64 = 0.05;
 
 /// A quick update between pictures that differ in path data only: the last text, and the line of the picture for each path in it.
 #[derive(Debug)]
-pub(crate) struct Quick {
+pub(crate) struct PathUpdate {
     text: String,
     /// The ranges of path data in the text.
     data: Vec<Range<usize>>,
     lines: Vec<usize>,
 }
 
-impl Quick {
+impl PathUpdate {
     /// Prepares quick updates from this text, which `picture` shows. Returns `None` if the text does not permit them.
-    pub(crate) fn from(text: String, picture: &Picture) -> Option<Self> {
+    pub(crate) fn prepare(text: String, picture: &Picture) -> Option<Self> {
         if DERIVED.iter().any(|word| text.contains(word)) {
             return None;
         }
-        let (data, paths) = (data(&text), picture.paths());
-        let same = |(range, (_, shown)): (&Range<usize>, &(usize, &str))| is_same(&text[range.clone()], shown);
-        (data.len() == paths.len() && data.iter().zip(&paths).all(same)).then(|| {
+        let (data, paths) = (path_data_ranges(&text), picture.paths());
+        let is_shown =
+            |(range, (_, shown)): (&Range<usize>, &(usize, &str))| has_same_extent(&text[range.clone()], shown);
+        (data.len() == paths.len() && data.iter().zip(&paths).all(is_shown)).then(|| {
             let lines = paths.iter().map(|(line, _)| *line).collect();
             Self { text, data, lines }
         })
@@ -275,7 +276,7 @@ impl Quick {
 
     /// Proceeds to the next text. Returns the lines whose path data differ, with the new data, or `None` if anything else differs.
     pub(crate) fn next(&mut self, text: &str) -> Option<Vec<(usize, String)>> {
-        let new = data(text);
+        let new = path_data_ranges(text);
         if self.data.len() != new.len() {
             return None;
         }
@@ -305,37 +306,32 @@ impl Quick {
 }
 
 /// Returns the ranges of path data in a text, without their quotes.
-fn data(text: &str) -> Vec<Range<usize>> {
+fn path_data_ranges(text: &str) -> Vec<Range<usize>> {
     /// The attribute's name with the characters around it.
     const NAME: &str = " d=";
     let mut out = Vec::new();
     let mut from = 0;
     while let Some(at) = text[from..].find(NAME) {
-        let quote = from + at + NAME.len();
-        let Some(mark @ (b'"' | b'\'')) = text.as_bytes().get(quote).copied() else {
-            from = quote;
-            continue;
-        };
-        let start = quote + 1;
-        let Some(length) = text[start..].find(mark as char) else { break };
-        out.push(start..start + length);
+        from += at + NAME.len();
+        let Some(quote @ (b'"' | b'\'')) = text.as_bytes().get(from).copied() else { continue };
+        let start = from + 1;
+        let Some(length) = text[start..].find(quote as char) else { break };
         from = start + length;
+        out.push(start..from);
     }
     out
 }
 
 /// Returns `true` if two texts of path data have the same extent and number of subpaths.
-fn is_same(a: &str, b: &str) -> bool {
-    let read = |d: &str| {
+fn has_same_extent(a: &str, b: &str) -> bool {
+    let box_and_subpaths = |d: &str| {
         let path = BezPath::from_svg(d).ok()?;
         let starts = path.elements().iter().filter(|e| matches!(e, pathwarp::kurbo::PathEl::MoveTo(_))).count();
         Some((path.bounding_box(), starts))
     };
-    let near = |a: Rect, b: Rect| {
-        let off = [a.x0 - b.x0, a.y0 - b.y0, a.x1 - b.x1, a.y1 - b.y1];
-        off.iter().all(|v| v.abs() <= ROUNDING)
-    };
-    read(a).zip(read(b)).is_some_and(|((a, m), (b, n))| m == n && near(a, b))
+    let agree =
+        |a: Rect, b: Rect| [a.x0 - b.x0, a.y0 - b.y0, a.x1 - b.x1, a.y1 - b.y1].iter().all(|v| v.abs() <= ROUNDING);
+    box_and_subpaths(a).zip(box_and_subpaths(b)).is_some_and(|((a, m), (b, n))| m == n && agree(a, b))
 }
 
 fn resolved(svg: &str, reading: &ReadOptions) -> Result<Arc<usvg::Tree>, String> {
@@ -350,8 +346,8 @@ mod tests {
     fn any_name_is_shown() {
         let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path id="a&lt;&amp;&quot;&#10;b" d="M1,1h5v5z"/></svg>"#;
         for text in [
-            Picture::of(svg, 2, &ReadOptions::default()).unwrap().text(),
-            Picture::small(svg, &ReadOptions::default()).unwrap(),
+            Picture::from_svg(svg, 2, &ReadOptions::default()).unwrap().text(),
+            Picture::thumbnail(svg, &ReadOptions::default()).unwrap(),
         ] {
             let document =
                 pathwarp_svg::Document::read(text.as_bytes(), "the picture", &ReadOptions::default()).unwrap();
@@ -364,7 +360,7 @@ mod tests {
         let svg = format!(
             "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' viewBox='0 0 40 20'>{body}</svg>"
         );
-        Picture::of(&svg, 4, &ReadOptions::default()).unwrap()
+        Picture::from_svg(&svg, 4, &ReadOptions::default()).unwrap()
     }
 
     #[test]
@@ -408,8 +404,8 @@ mod tests {
         )
     }
 
-    fn quick(text: &str) -> Option<Quick> {
-        Quick::from(text.to_owned(), &Picture::of(text, 2, &ReadOptions::default()).unwrap())
+    fn quick(text: &str) -> Option<PathUpdate> {
+        PathUpdate::prepare(text.to_owned(), &Picture::from_svg(text, 2, &ReadOptions::default()).unwrap())
     }
 
     #[test]
@@ -418,7 +414,7 @@ mod tests {
         let changes = quick.next(&text("M0,0H8V9z", "red")).unwrap();
         let [(line, data)] = changes.as_slice() else { panic!("{changes:?}") };
         assert_eq!(data, "M0,0H8V9z");
-        let mut picture = Picture::of(&text("M0,0h9v9z", "red"), 2, &ReadOptions::default()).unwrap();
+        let mut picture = Picture::from_svg(&text("M0,0h9v9z", "red"), 2, &ReadOptions::default()).unwrap();
         picture.redraw(&changes);
         assert_eq!(picture.paths()[0], (*line, "M0,0H8V9z"));
         assert_eq!(quick.next(&text("M0,0H8V9z", "red")), Some(Vec::new()));

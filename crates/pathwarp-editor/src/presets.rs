@@ -87,16 +87,16 @@ impl Preset {
     }
 }
 
-/// Maps the path data of a step from one box onto another. Circles and arcs stay: they move only to another drawing ([`brought`]).
-pub(crate) fn laid(registry: &Registry, mut step: PageStep, from: Rect, to: Rect) -> PageStep {
+/// Maps the path data of a step from one box onto another. Circles and arcs stay: they move only to another drawing ([`adapted`]).
+pub(crate) fn fit_to_box(registry: &Registry, mut step: PageStep, from: Rect, to: Rect) -> PageStep {
     let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
-    let onto = onto(from, to);
+    let map = box_map(from, to);
     for p in params.iter().filter(|p| p.kind == Kind::Path) {
         for value in step.args.get_mut(p.name).into_iter().flatten() {
             if value.trim_start().starts_with(['M', 'm'])
                 && let Ok(outline) = Outline::from_svg(value)
             {
-                *value = path_data(&outline.transformed(onto));
+                *value = path_data(&outline.transformed(map));
             }
         }
     }
@@ -104,13 +104,13 @@ pub(crate) fn laid(registry: &Registry, mut step: PageStep, from: Rect, to: Rect
 }
 
 /// Adapts a step of another drawing: its paths, circles and arcs are mapped onto a box of this drawing, and its selection is dropped.
-pub(crate) fn brought(registry: &Registry, step: PageStep, from: Option<Rect>, to: Rect) -> PageStep {
+pub(crate) fn adapted(registry: &Registry, step: PageStep, from: Option<Rect>, to: Rect) -> PageStep {
     let step = PageStep { select: Vec::new(), exclude: Vec::new(), ..step };
     let Some(from) = from else { return step };
-    let mut step = laid(registry, step, from, to);
+    let mut step = fit_to_box(registry, step, from, to);
     for value in step.args.values_mut().flatten() {
-        if let Some(laid) = laid_arc(value, onto(from, to)) {
-            *value = laid;
+        if let Some(image) = fit_arc(value, box_map(from, to)) {
+            *value = image;
         }
     }
     step
@@ -120,22 +120,22 @@ pub(crate) fn brought(registry: &Registry, step: PageStep, from: Option<Rect>, t
 const DECIMALS: usize = 4;
 
 /// Maps the centre and the radius of a circle or an arc. `None` if it is in other units, or the text is something else.
-fn laid_arc(text: &str, onto: Affine) -> Option<String> {
+fn fit_arc(text: &str, map: Affine) -> Option<String> {
     let (kind, rest) = text.split_once(':').filter(|(kind, _)| ["circle", "arc"].contains(kind))?;
     let pairs: Vec<(&str, &str)> = rest.split(',').map(|pair| pair.split_once('=')).collect::<Option<_>>()?;
     let number = |name: &str| pairs.iter().find(|(n, _)| *n == name)?.1.parse::<f64>().ok();
-    let (centre, r) = (onto * Point::new(number("cx")?, number("cy")?), number("r")?);
+    let (centre, r) = (map * Point::new(number("cx")?, number("cy")?), number("r")?);
     let pair = |&(name, value): &(&str, &str)| match name {
         "cx" => format!("cx={}", trimmed(centre.x, DECIMALS)),
         "cy" => format!("cy={}", trimmed(centre.y, DECIMALS)),
-        "r" => format!("r={}", trimmed(r * onto.determinant().abs().sqrt(), DECIMALS)),
+        "r" => format!("r={}", trimmed(r * map.determinant().abs().sqrt(), DECIMALS)),
         _ => format!("{name}={value}"),
     };
     Some(format!("{kind}:{}", pairs.iter().map(pair).collect::<Vec<_>>().join(",")))
 }
 
 /// Returns the map of one box onto another; a box without width or height is not scaled in that direction.
-fn onto(from: Rect, to: Rect) -> Affine {
+fn box_map(from: Rect, to: Rect) -> Affine {
     let scale = |from: f64, to: f64| if from > 0.0 && to > 0.0 { to / from } else { 1.0 };
     Affine::translate(to.origin().to_vec2())
         * Affine::scale_non_uniform(scale(from.width(), to.width()), scale(from.height(), to.height()))
@@ -153,7 +153,7 @@ mod tests {
         let preset = Preset { name: "a".into(), steps: vec![step], frames: vec![[0.0, 0.0, 10.0, 10.0]] };
         let mut all = preset.steps_with_frames();
         let (step, from) = all.next().unwrap();
-        let laid = laid(&Registry::builtin(), step, from.unwrap(), Rect::new(5.0, 5.0, 25.0, 10.0));
+        let laid = fit_to_box(&Registry::builtin(), step, from.unwrap(), Rect::new(5.0, 5.0, 25.0, 10.0));
         assert_eq!(laid.args["shaper"], ["M5,10 L25,10 L25,5 L5,5 Z"]);
         assert_eq!(all.next(), None);
     }
@@ -164,7 +164,7 @@ mod tests {
         let select = vec!["#mark".to_owned()];
         let step = PageStep { deformation: "bend".into(), args: args.into(), select, ..PageStep::default() };
         let [from, to] = [Rect::new(0.0, 0.0, 10.0, 10.0), Rect::new(100.0, 0.0, 140.0, 90.0)];
-        let brought = brought(&Registry::builtin(), step, Some(from), to);
+        let brought = adapted(&Registry::builtin(), step, Some(from), to);
         assert_eq!(brought.args["along"], ["arc:r=18,cx=120,cy=45,from=90,to=450"]);
         assert!(brought.select.is_empty());
     }

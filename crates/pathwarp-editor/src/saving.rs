@@ -8,30 +8,28 @@ const SUFFIX: &str = "-bent";
 const MOST_NAMES: usize = 1000;
 
 /// Returns the usual name for the result of `source`: an unused one beside it.
-pub(crate) fn usual(source: &Path) -> PathBuf {
+pub(crate) fn default_result(source: &Path) -> PathBuf {
     let stem = source.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    free(source, &(stem + SUFFIX))
+    unused_name(source, &(stem + SUFFIX))
 }
 
 /// Returns an unused name for words, beside `beside`.
-pub(crate) fn of_words(text: &str, beside: &Path) -> PathBuf {
+pub(crate) fn words_file(text: &str, beside: &Path) -> PathBuf {
     /// Longest name, in letters.
     const LONGEST: usize = 40;
-    let plain = |c: char| if c.is_alphanumeric() { c } else { '-' };
-    let name: String = text.trim().chars().map(plain).take(LONGEST).collect();
-    let words: Vec<&str> = name.split('-').filter(|word| !word.is_empty()).collect();
-    free(beside, &if words.is_empty() { "words".to_owned() } else { words.join("-") })
+    let name: String = text.trim().chars().take(LONGEST).collect();
+    let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    unused_name(beside, &if words.is_empty() { "words".to_owned() } else { words.join("-") })
 }
 
 /// Returns an unused name beside a file, numbered if necessary.
-fn free(beside: &Path, stem: &str) -> PathBuf {
-    names(beside, stem)
-        .find(|p| !p.exists())
-        .unwrap_or_else(|| beside.with_file_name(format!("{stem}-{MOST_NAMES}.svg")))
+fn unused_name(beside: &Path, stem: &str) -> PathBuf {
+    let last = || beside.with_file_name(format!("{stem}-{MOST_NAMES}.svg"));
+    numbered_names(beside, stem).find(|p| !p.exists()).unwrap_or_else(last)
 }
 
 /// Returns names beside a file, numbered from the second on.
-fn names(beside: &Path, stem: &str) -> impl Iterator<Item = PathBuf> {
+fn numbered_names(beside: &Path, stem: &str) -> impl Iterator<Item = PathBuf> {
     (1..MOST_NAMES).map(move |n| {
         let number = if n == 1 { String::new() } else { format!("-{n}") };
         beside.with_file_name(format!("{stem}{number}.svg"))
@@ -43,15 +41,18 @@ fn names(beside: &Path, stem: &str) -> impl Iterator<Item = PathBuf> {
 pub(crate) fn source_of(result: &Path, source: &[u8]) -> Option<(PathBuf, bool)> {
     let stem = result.file_stem()?.to_string_lossy().into_owned();
     let stem = stem.rfind(SUFFIX).map_or(stem.as_str(), |at| &stem[..at]);
-    let own = [".svg", ".svgz"].map(|end| result.with_file_name(format!("{stem}{end}")));
-    let is_it = |name: &Path| std::fs::read(name).is_ok_and(|content| content == source);
+    let drawings = [".svg", ".svgz"].map(|extension| result.with_file_name(format!("{stem}{extension}")));
+    let is_source = |name: &Path| std::fs::read(name).is_ok_and(|content| content == source);
     let beside = format!("{stem}-source");
-    let known = own.into_iter().chain(names(result, &beside).take_while(|n| n.exists())).find(|name| is_it(name));
-    Some(known.map_or_else(|| (free(result, &beside), false), |name| (name, true)))
+    let known = drawings
+        .into_iter()
+        .chain(numbered_names(result, &beside).take_while(|n| n.exists()))
+        .find(|name| is_source(name));
+    Some(known.map_or_else(|| (unused_name(result, &beside), false), |name| (name, true)))
 }
 
 /// Returns the path of the file `name` in the folder of `beside`.
-pub(crate) fn named(name: &str, beside: &Path) -> Result<PathBuf, String> {
+pub(crate) fn file_beside(name: &str, beside: &Path) -> Result<PathBuf, String> {
     let name = name.trim();
     let wrong = |problem: &str| Err(format!("`{name}` {problem}"));
     if name.is_empty() {
@@ -93,13 +94,13 @@ mod tests {
     #[test]
     fn names_stay_in_the_folder() {
         let beside = Path::new("/art/logo.svg");
-        assert_eq!(usual(beside), Path::new("/art/logo-bent.svg"));
-        assert_eq!(of_words("It's “Fjord” & <sea>\n", beside), Path::new("/art/It-s-Fjord-sea.svg"));
-        assert_eq!(of_words(" … ", beside), Path::new("/art/words.svg"));
-        assert_eq!(named("flag", beside), Ok("/art/flag.svg".into()));
-        assert_eq!(named("flag.pdf", beside), Ok("/art/flag.pdf".into()));
+        assert_eq!(default_result(beside), Path::new("/art/logo-bent.svg"));
+        assert_eq!(words_file("It's “Fjord” & <sea>\n", beside), Path::new("/art/It-s-Fjord-sea.svg"));
+        assert_eq!(words_file(" … ", beside), Path::new("/art/words.svg"));
+        assert_eq!(file_beside("flag", beside), Ok("/art/flag.svg".into()));
+        assert_eq!(file_beside("flag.pdf", beside), Ok("/art/flag.pdf".into()));
         for wrong in ["", "../x.svg", "a/b.svg", ".hidden", "a\\b"] {
-            assert!(named(wrong, beside).is_err(), "{wrong}");
+            assert!(file_beside(wrong, beside).is_err(), "{wrong}");
         }
     }
 }

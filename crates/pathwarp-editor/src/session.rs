@@ -1,9 +1,9 @@
 //! The session: one drawing with its steps, shared by all open pages.
 
-use crate::catalogue::{example, of_variant, opening};
+use crate::catalogue::{example_values, opening_values, variant_values};
 use crate::command_line::{command_line, quoted};
-use crate::draft::{self, Draft, Kept, Moment, NO_FOLDER};
-use crate::grips::{grips, of_caption, rect, with_net_of};
+use crate::draft::{self, Draft, History, Moment, NO_FOLDER};
+use crate::grips::{caption_grips, carried_net_values, grips, rect};
 use crate::guard::Guard;
 use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose};
 use crate::picture::Picture;
@@ -35,8 +35,8 @@ const DRAFT_DECIMALS: u8 = 2;
 /// Tolerance of thumbnails, as a share of the artwork's diagonal: far below a pixel of theirs.
 const THUMBNAIL_TOLERANCE: f64 = 1e-3;
 
-/// Largest distance of a preimage's image from the point, as a share of the frame's size.
-const PREIMAGE: f64 = 1e-6;
+/// Largest distance of a preimage's image from the point, as a share of the frame's width plus height.
+const PREIMAGE_TOLERANCE: f64 = 1e-6;
 
 /// The drawing and its steps.
 pub(crate) struct Session {
@@ -44,14 +44,14 @@ pub(crate) struct Session {
     /// The file on show; results go to its folder.
     file: PathBuf,
     /// The file that the editor was started with, if another one is on show.
-    first: Option<PathBuf>,
+    started_with: Option<PathBuf>,
     purpose: Purpose,
     /// `true` if the user has confirmed the steps as the session's result.
     handed_over: bool,
     opened: Opened,
     /// The words that the drawing was set from, if any.
     words: Option<Words>,
-    kept: Kept,
+    history: History,
     /// The user's folder for drafts and addresses.
     drafts: Option<PathBuf>,
     draft: Draft,
@@ -77,7 +77,7 @@ pub(crate) struct Shown {
 impl Shown {
     /// Returns the picture of the drawing.
     pub(crate) fn picture(&self) -> Result<Picture, String> {
-        Picture::of(&self.svg, if self.is_draft { DRAFT_DECIMALS } else { DECIMALS }, &self.reading)
+        Picture::from_svg(&self.svg, if self.is_draft { DRAFT_DECIMALS } else { DECIMALS }, &self.reading)
     }
 }
 
@@ -91,29 +91,25 @@ impl Session {
         drafts: Option<PathBuf>,
     ) -> Result<Self, String> {
         let opened = host.open(file, bytes)?;
-        let draft = Draft::of(drafts.as_deref(), file, bytes);
-        let kept = draft.read();
-        let restored = kept.is_some();
+        let draft = Draft::for_drawing(drafts.as_deref(), file, bytes);
+        let restored = draft.read();
         let problem = (drafts.is_none() && purpose.program().is_none()).then(|| NO_FOLDER.to_owned());
-        let as_opened = Kept::new(steps(&opened.recipe));
+        let as_opened = History::new(steps(&opened.recipe));
         let saved = opened.is_result.then(|| (file.to_owned(), as_opened.now.clone()));
-        let kept = kept.unwrap_or(as_opened);
-        let words = Words::of(opened.artwork.document().text());
-        let (file, first, handed_over, drawing) = (file.to_owned(), None, false, draft.key.clone());
         Ok(Self {
             host,
-            file,
-            first,
+            file: file.to_owned(),
+            started_with: None,
             purpose,
-            handed_over,
+            handed_over: false,
+            words: Words::of(opened.artwork.document().text()),
             opened,
-            words,
-            kept,
+            restored: restored.is_some(),
+            history: restored.unwrap_or(as_opened),
             drafts,
+            drawing: draft.key.clone(),
             draft,
-            drawing,
             saved,
-            restored,
             problem,
         })
     }
@@ -128,14 +124,14 @@ impl Session {
     /// Opens a drawing that was dropped on the page, with its draft; the present draft stays.
     pub(crate) fn replace(&mut self, name: &str, bytes: &str) -> Result<(), String> {
         self.refuse_for_program("another drawing cannot be opened")?;
-        let file = saving::named(name, &self.file)?;
+        let file = saving::file_beside(name, &self.file)?;
         let content = STANDARD.decode(bytes).map_err(|e| format!("{name}: {e}"))?;
         let (host, purpose) = (Arc::clone(&self.host), Purpose::Files { out: None });
         let mut other = Self::open(host, &file, &content, purpose, self.drafts.clone())?;
-        let first = self.first.take().or_else(|| Some(std::mem::take(&mut self.file)));
+        let started_with = self.started_with.take().or_else(|| Some(std::mem::take(&mut self.file)));
         // Another file may have this name in the folder.
         let saved = other.saved.take().filter(|(there, _)| std::fs::read(there).is_ok_and(|c| c == content));
-        *self = Self { first, saved, ..other };
+        *self = Self { started_with, saved, ..other };
         Ok(())
     }
 
@@ -150,36 +146,37 @@ impl Session {
         self.refuse_for_program("words cannot be set")?;
         let (svg, lacking) = self.host.set_words(words)?;
         let svg = words.written(&svg);
-        let own = self.words.is_some().then_some(&self.file).filter(|_| !self.opened.is_result);
-        let file = own.cloned().unwrap_or_else(|| saving::of_words(&words.text, &self.file));
+        let replaces_file = self.words.is_some() && !self.opened.is_result;
+        let file = if replaces_file { self.file.clone() } else { saving::words_file(&words.text, &self.file) };
         if self.words.is_some() {
             self.edit_words(&file, svg)?;
             return Ok(lacking);
         }
         let other = self.with_drawing(&file, &svg)?;
         self.host.write(&file, svg.as_bytes())?;
-        let first = self.first.take().or_else(|| Some(self.file.clone()));
-        *self = Self { first, ..other };
+        let started_with = self.started_with.take().or_else(|| Some(self.file.clone()));
+        *self = Self { started_with, ..other };
         Ok(lacking)
     }
 
+    /// Replaces words by the drawing `svg` of other words, under the same steps.
     fn edit_words(&mut self, file: &Path, svg: String) -> Result<(), String> {
         let old = self.opened.artwork.document().text().to_owned();
         if svg == old {
             return Ok(());
         }
         let mut other = self.with_drawing(file, &svg)?;
-        let (old_steps, mut steps) = (self.kept.now.steps.clone(), Vec::new());
+        let (old_steps, mut steps) = (self.history.now.steps.clone(), Vec::new());
         let frames = self.frames(&old_steps)?;
         for (step, from) in old_steps.into_iter().zip(frames) {
             // Keep a step as it is while the letters that it applies to are missing.
-            let waits = self.waits(&step) || other.waits(&step);
-            let to = if waits { from } else { other.frame_of(&steps, &step.select)? };
-            steps.push(presets::laid(other.host.registry(), step, from, to));
+            let lacks_parts = self.lacks_parts(&step) || other.lacks_parts(&step);
+            let to = if lacks_parts { from } else { other.frame_of(&steps, &step.select)? };
+            steps.push(presets::fit_to_box(other.host.registry(), step, from, to));
         }
-        let mut kept = self.kept.clone();
-        kept.set_anew(&old, svg, steps);
-        self.redraw(other, kept)
+        let mut history = self.history.clone();
+        history.push_drawing(&old, svg, steps);
+        self.switch_drawing(other, history)
     }
 
     /// Restricts the steps to existing parts of the drawing. Steps without any such part are hidden.
@@ -190,21 +187,21 @@ impl Session {
         }
         // A wrong caption is reported when the drawing is bent.
         let Ok(document) = self.opened.artwork.captioned(&recipe(given)) else { return out };
-        let is_here = |selector: &String| {
+        let exists = |selector: &String| {
             let select = vec![selector.clone()];
             document.check_selection(&Selection { select, ..Selection::default() }).is_ok()
         };
         for step in &mut out {
-            let is_of_all = step.select.is_empty();
-            step.select.retain(is_here);
-            step.exclude.retain(is_here);
-            step.hidden |= step.select.is_empty() && !is_of_all;
+            let is_for_all = step.select.is_empty();
+            step.select.retain(exists);
+            step.exclude.retain(exists);
+            step.hidden |= step.select.is_empty() && !is_for_all;
         }
         out
     }
 
     /// Returns `true` if a step applies to missing parts only.
-    fn waits(&mut self, step: &PageStep) -> bool {
+    fn lacks_parts(&mut self, step: &PageStep) -> bool {
         !step.hidden && self.present(std::slice::from_ref(step)).iter().all(|s| s.hidden)
     }
 
@@ -214,12 +211,12 @@ impl Session {
     }
 
     /// Returns the recipe for results. Without steps, as for words, it has one that moves nothing.
-    fn finishing(&mut self) -> Recipe {
-        let mut given = self.recipe(&self.kept.now.steps.clone());
-        if given.steps.is_empty() {
-            given.steps.push(Step::new("affine", Args::new()));
+    fn result_recipe(&mut self) -> Recipe {
+        let mut recipe = self.recipe(&self.history.now.steps.clone());
+        if recipe.steps.is_empty() {
+            recipe.steps.push(Step::new("affine", Args::new()));
         }
-        given
+        recipe
     }
 
     /// Opens the drawing `svg`, which will be the content of `file`, in a session with the same settings.
@@ -228,23 +225,23 @@ impl Session {
         Self::open(host, file, svg.as_bytes(), purpose, self.drafts.clone())
     }
 
-    /// Switches to another drawing and its history `kept`, and writes the drawing's file.
-    fn redraw(&mut self, other: Self, kept: Kept) -> Result<(), String> {
-        let mut other = Self { kept, saved: self.saved.clone(), restored: false, ..other };
+    /// Switches to another drawing and its history, and writes the drawing's file.
+    fn switch_drawing(&mut self, other: Self, history: History) -> Result<(), String> {
+        let mut other = Self { history, saved: self.saved.clone(), restored: false, ..other };
         // Store the draft first: if the program crashes before the next line, nothing is lost.
-        other.keep();
+        other.store_draft();
         self.host.write(&other.file, other.opened.artwork.document().text().as_bytes())?;
         if other.draft != self.draft {
             self.draft.remove();
         }
-        *self = Self { first: self.first.take(), ..other };
+        *self = Self { started_with: self.started_with.take(), ..other };
         Ok(())
     }
 
     /// Writes a file that a step reads beside the drawing, unless an equal one is there. Answers with the text that names it in a step.
     pub(crate) fn bring(&self, name: &str, bytes: &str) -> Result<Value, String> {
         self.refuse_for_program("a file cannot be put beside the drawing")?;
-        let to = saving::named(name, &self.file)?;
+        let to = saving::file_beside(name, &self.file)?;
         let content = STANDARD.decode(bytes).map_err(|e| format!("{name}: {e}"))?;
         let copied = match std::fs::read(&to) {
             Ok(old) if old == content => false,
@@ -263,8 +260,8 @@ impl Session {
         let document = self.opened.artwork.document();
         let page = document.view_box();
         let name = |p: &Path| p.file_name().map(|n| n.to_string_lossy().into_owned());
-        let saved = self.saved.as_ref().filter(|(_, saved)| *saved == self.kept.now);
-        let again = saved.map(|(p, _)| p).or(self.first.as_ref()).unwrap_or(&self.file);
+        let saved = self.saved.as_ref().filter(|(_, saved)| *saved == self.history.now);
+        let again = saved.map(|(p, _)| p).or(self.started_with.as_ref()).unwrap_or(&self.file);
         let again = std::path::absolute(again).unwrap_or_else(|_| again.clone());
         json!({
             "file": if let Purpose::Program { drawing, .. } = &self.purpose { Some(drawing.clone()) } else { name(&self.file) },
@@ -272,9 +269,9 @@ impl Session {
             "program": self.purpose.program(),
             "folder": folder_of(&self.file),
             "drawing": self.drawing,
-            "steps": self.kept.now.steps,
-            "undo": !self.kept.undo.is_empty(),
-            "redo": !self.kept.redo.is_empty(),
+            "steps": self.history.now.steps,
+            "undo": !self.history.undo.is_empty(),
+            "redo": !self.history.redo.is_empty(),
             "saved": saved.is_some(),
             "savedTo": self.saved.as_ref().and_then(|(p, _)| name(p)),
             "savedIn": self.saved.as_ref().map(|(p, _)| folder_of(p)).filter(|f| *f != folder_of(&self.file)),
@@ -290,8 +287,8 @@ impl Session {
     }
 
     pub(crate) fn catalogue(&self) -> Value {
-        let first = if self.purpose.program().is_some() { &[] } else { self.host.first() };
-        crate::catalogue::catalogue(self.host.registry(), first, &self.host.foreign_words())
+        let edits = if self.purpose.program().is_some() { &[] } else { self.host.first() };
+        crate::catalogue::catalogue(self.host.registry(), edits, &self.host.foreign_words())
     }
 
     /// Bends the drawing by these steps; `draft` is the tolerance while something is dragged.
@@ -307,7 +304,7 @@ impl Session {
     /// Returns the drawing without steps.
     pub(crate) fn before(&self) -> Result<Picture, String> {
         let artwork = &self.opened.artwork;
-        Picture::of(artwork.document().text(), DECIMALS, artwork.reading())
+        Picture::from_svg(artwork.document().text(), DECIMALS, artwork.reading())
     }
 
     /// Returns the picture of a drawing given as base64.
@@ -316,20 +313,20 @@ impl Session {
         let content = STANDARD.decode(bytes).map_err(|e| wrong(&e))?;
         let reading = self.opened.artwork.reading();
         let document = Document::read(&content, name, reading).map_err(|e| wrong(&e))?;
-        Picture::of(document.text(), DECIMALS, reading)
+        Picture::from_svg(document.text(), DECIMALS, reading)
     }
 
     /// Returns `true` for an edit, which comes before bending.
-    fn is_first(&self, step: &PageStep) -> bool {
+    fn is_edit(&self, step: &PageStep) -> bool {
         self.host.first().iter().any(|i| i.name == step.deformation)
     }
 
     /// Distributes values of the steps that bend, in order, to all steps; edits and hidden steps get `other`.
-    fn spread<T: Clone>(&self, given: &[PageStep], of_bending: impl IntoIterator<Item = T>, other: &T) -> Vec<T> {
-        let mut of_bending = of_bending.into_iter();
-        let rests = |s: &PageStep| s.hidden || self.is_first(s);
-        let one = |s| if rests(s) { None } else { of_bending.next() };
-        given.iter().map(one).map(|found| found.unwrap_or_else(|| other.clone())).collect()
+    fn for_all_steps<T: Clone>(&self, given: &[PageStep], bending: impl IntoIterator<Item = T>, other: &T) -> Vec<T> {
+        let mut bending = bending.into_iter();
+        let bends = |s: &PageStep| !s.hidden && !self.is_edit(s);
+        let value = |s| if bends(s) { bending.next() } else { None };
+        given.iter().map(value).map(|found| found.unwrap_or_else(|| other.clone())).collect()
     }
 
     /// Describes a drawing bent by these steps for a page; `present` are the steps restricted to existing parts.
@@ -337,13 +334,13 @@ impl Session {
         let artwork = &self.opened.artwork;
         let grips = grips(self.host.registry(), &bent.resolved, &bent.built);
         let without = json!({ "frame": rect(artwork.frame()), "params": {} });
-        let mut grips = self.spread(present, grips, &without);
+        let mut grips = self.for_all_steps(present, grips, &without);
         for (step, grips) in given.iter().zip(&mut grips) {
             // Of the edits, only captions have handles.
             if let [caption] = &*recipe(std::slice::from_ref(step)).steps
                 && is_caption(caption)
             {
-                *grips = of_caption(&caption.args, &caption::frame(artwork.document()));
+                *grips = caption_grips(&caption.args, &caption::frame(artwork.document()));
             }
         }
         let gone: Vec<usize> = (0..given.len()).filter(|&i| present[i].hidden && !given[i].hidden).collect();
@@ -351,7 +348,7 @@ impl Session {
             "grips": grips,
             "gone": gone,
             "guides": guides(&bent.built),
-            "warnings": bent.warnings.iter().map(|w| self.said(w)).collect::<Vec<_>>(),
+            "warnings": bent.warnings.iter().map(|w| self.with_drawing_name(w)).collect::<Vec<_>>(),
             "page": bent.page.map(|p| [p.x0, p.y0, p.width(), p.height()]),
         });
         if let Some(s) = &bent.summary {
@@ -366,7 +363,7 @@ impl Session {
         about
     }
 
-    /// Replaces the steps, unless the drawing cannot be bent by the new ones.
+    /// Replaces the steps, unless the drawing cannot be bent by the new ones. The picture is that of the first `shown` steps.
     pub(crate) fn commit(&mut self, given: Vec<PageStep>, shown: Option<usize>) -> Result<Shown, String> {
         let visible = visible(&given, shown);
         let picture = self.bend(visible, None)?;
@@ -374,46 +371,51 @@ impl Session {
             let all = self.recipe(&given);
             self.opened.artwork.settle(&all)?;
         }
-        if given != self.kept.now.steps {
-            self.kept.go_on(given);
-            self.keep();
+        if given != self.history.now.steps {
+            self.history.push_steps(given);
+            self.store_draft();
         }
         Ok(picture)
     }
 
-    /// Undoes the last change (`back`), or redoes the one undone last.
-    pub(crate) fn turn(&mut self, back: bool, shown: Option<usize>) -> Result<Shown, String> {
-        let mut kept = self.kept.clone();
-        if back {
-            kept.undo();
-        } else {
-            kept.redo();
-        }
-        if kept.now.drawing == self.kept.now.drawing {
-            self.kept = kept;
-            self.keep();
-        } else {
-            let svg = kept.drawing().ok_or("the draft lacks a drawing")?;
-            self.redraw(self.with_drawing(&self.file, svg)?, kept)?;
-        }
-        self.now(shown)
+    /// Undoes the last change.
+    pub(crate) fn undo(&mut self, shown: Option<usize>) -> Result<Shown, String> {
+        let mut history = self.history.clone();
+        history.undo();
+        self.go_to(history, shown)
     }
 
-    fn now(&mut self, shown: Option<usize>) -> Result<Shown, String> {
-        let given = self.kept.now.steps.clone();
+    /// Redoes the change undone last.
+    pub(crate) fn redo(&mut self, shown: Option<usize>) -> Result<Shown, String> {
+        let mut history = self.history.clone();
+        history.redo();
+        self.go_to(history, shown)
+    }
+
+    /// Shows the present state of a history, which may have another drawing.
+    fn go_to(&mut self, history: History, shown: Option<usize>) -> Result<Shown, String> {
+        if history.now.drawing == self.history.now.drawing {
+            self.history = history;
+            self.store_draft();
+        } else {
+            let svg = history.drawing().ok_or("the draft lacks a drawing")?;
+            self.switch_drawing(self.with_drawing(&self.file, svg)?, history)?;
+        }
+        let given = self.history.now.steps.clone();
         self.bend(visible(&given, shown), None)
     }
 
-    fn keep(&mut self) {
+    /// Stores the draft, or removes it if all is saved. Without a folder for drafts, the page shows the problem.
+    fn store_draft(&mut self) {
         if self.purpose.program().is_some() {
             return;
         }
-        let is_saved = self.saved.as_ref().is_some_and(|(_, saved)| *saved == self.kept.now);
+        let is_saved = self.saved.as_ref().is_some_and(|(_, saved)| *saved == self.history.now);
         self.problem = if is_saved {
             self.draft.remove();
             None
         } else {
-            self.draft.keep(&*self.host, &self.kept).err()
+            self.draft.store(&*self.host, &self.history).err()
         };
     }
 
@@ -432,8 +434,8 @@ impl Session {
             return Ok(json!({ "at": [at.x, at.y] }));
         };
         let from = inverse_over(step.map.clone(), frame.rect).point(at);
-        let near = PREIMAGE * (frame.rect.width() + frame.rect.height());
-        let from = (step.map.point(from).distance(at) <= near).then_some([from.x, from.y]);
+        let tolerance = PREIMAGE_TOLERANCE * (frame.rect.width() + frame.rect.height());
+        let from = (step.map.point(from).distance(at) <= tolerance).then_some([from.x, from.y]);
         Ok(json!({ "at": from }))
     }
 
@@ -446,12 +448,12 @@ impl Session {
         after.args.extend(values);
         let entry = self.host.registry().get(&after.deformation);
         if let (Some(entry), Some(old), Some(frame)) = (entry, resolved.steps.last(), built.frames.last()) {
-            let mut rest = after.clone();
-            rest.args.retain(|name, _| !["at", "move", "weight"].contains(&name.as_str()));
-            let new = recipe(std::slice::from_ref(&rest));
-            let net = new.steps.first().and_then(|new| with_net_of(entry.info(), &old.args, &new.args, frame));
+            let mut undistorted = after.clone();
+            undistorted.args.retain(|name, _| !["at", "move", "weight"].contains(&name.as_str()));
+            let new = recipe(std::slice::from_ref(&undistorted));
+            let net = new.steps.first().and_then(|new| carried_net_values(entry.info(), &old.args, &new.args, frame));
             if let Some(net) = net {
-                after = rest;
+                after = undistorted;
                 after.args.extend(net);
             }
         }
@@ -462,7 +464,7 @@ impl Session {
         let new = self.opened.artwork.settle(&all).ok();
         let new = new.as_ref().and_then(|(_, new)| new.steps.last());
         let both = built.steps.last().zip(built.frames.last()).zip(new);
-        let moved = both.map_or(0.0, |((old, frame), new)| apart(&old.map, &new.map, frame.rect));
+        let moved = both.map_or(0.0, |((old, frame), new)| largest_distance(&old.map, &new.map, frame.rect));
         Ok(json!({ "step": after, "moved": moved }))
     }
 
@@ -475,7 +477,7 @@ impl Session {
         select: Vec<String>,
     ) -> Result<PageStep, String> {
         let frame = self.frame_of(given, &select)?;
-        Ok(PageStep { select, ..self.begun(deformation, variant, frame, false)? })
+        Ok(PageStep { select, ..self.first_step(deformation, variant, frame, false)? })
     }
 
     /// Returns the box of these parts of the drawing after these steps.
@@ -483,10 +485,10 @@ impl Session {
         if select.is_empty() {
             return self.frame_after(given);
         }
-        let still = PageStep { deformation: "affine".into(), select: select.to_vec(), ..PageStep::default() };
-        let steps = [given, &[still]].concat();
-        let steps = self.recipe(&steps);
-        let (_, built) = self.opened.artwork.settle(&steps)?;
+        // The frame of a further step for these parts, which moves nothing.
+        let identity = PageStep { deformation: "affine".into(), select: select.to_vec(), ..PageStep::default() };
+        let recipe = self.recipe(&[given, &[identity]].concat());
+        let (_, built) = self.opened.artwork.settle(&recipe)?;
         built.frames.last().map(|f| f.rect).ok_or_else(|| "the parts have no box".into())
     }
 
@@ -494,13 +496,13 @@ impl Session {
     pub(crate) fn scope(&mut self, mut given: Vec<PageStep>, select: Vec<String>) -> Result<PageStep, String> {
         let Some(step) = given.pop() else { return Err("there is no step".into()) };
         let [from, to] = [self.frame_of(&given, &step.select)?, self.frame_of(&given, &select)?];
-        let step = presets::laid(self.host.registry(), step, from, to);
+        let step = presets::fit_to_box(self.host.registry(), step, from, to);
         Ok(PageStep { select, ..step })
     }
 
     /// Lists the parts of the drawing.
     pub(crate) fn parts(&mut self) -> Result<Value, String> {
-        let document = self.opened.artwork.captioned(&recipe(&self.kept.now.steps))?;
+        let document = self.opened.artwork.captioned(&recipe(&self.history.now.steps))?;
         let parts = document.parts().into_iter().take(MOST_PARTS);
         let part = |p: DrawingPart| json!({ "name": p.name, "selector": p.selector, "label": p.label, "element": p.element, "depth": p.depth });
         Ok(parts.map(part).collect())
@@ -510,7 +512,7 @@ impl Session {
     fn frames(&mut self, given: &[PageStep]) -> Result<Vec<Rect>, String> {
         let present = self.present(given);
         let (_, built) = self.opened.artwork.settle(&recipe(&present))?;
-        Ok(self.spread(&present, built.frames.iter().map(|f| f.rect), &self.opened.artwork.frame()))
+        Ok(self.for_all_steps(&present, built.frames.iter().map(|f| f.rect), &self.opened.artwork.frame()))
     }
 
     /// Returns the frame of a step that follows these.
@@ -527,15 +529,18 @@ impl Session {
         Ok(presets::all()?.into_iter().map(|p| p.name).collect())
     }
 
-    /// Stores the present steps as a preset.
-    pub(crate) fn keep_preset(&mut self, name: &str) -> Result<(), String> {
-        let given = self.kept.now.steps.clone();
+    /// Stores the present steps as a preset. Returns the names of all presets.
+    pub(crate) fn keep_preset(&mut self, name: &str) -> Result<Vec<String>, String> {
+        let given = self.history.now.steps.clone();
         let frames = self.frames(&given)?;
-        presets::keep(&*self.host, name, given, &frames)
+        presets::keep(&*self.host, name, given, &frames)?;
+        self.presets()
     }
 
-    pub(crate) fn forget_preset(&self, name: &str) -> Result<(), String> {
-        presets::forget(&*self.host, name)
+    /// Deletes a preset. Returns the names of the others.
+    pub(crate) fn forget_preset(&self, name: &str) -> Result<Vec<String>, String> {
+        presets::forget(&*self.host, name)?;
+        self.presets()
     }
 
     /// Returns the steps of a preset, adapted to this drawing.
@@ -545,7 +550,7 @@ impl Session {
         let mut out = Vec::new();
         for (step, from) in preset.steps_with_frames() {
             let to = self.frame_of(&out, &[])?;
-            out.push(presets::brought(self.host.registry(), step, from, to));
+            out.push(presets::adapted(self.host.registry(), step, from, to));
         }
         Ok(out)
     }
@@ -556,23 +561,29 @@ impl Session {
         let tolerance = THUMBNAIL_TOLERANCE * frame.width().hypot(frame.height());
         let given = self.recipe(given);
         let bent = self.opened.artwork.bend(&given, Fineness::Small(tolerance))?;
-        Picture::small(&bent.svg, self.opened.artwork.reading())
+        Picture::thumbnail(&bent.svg, self.opened.artwork.reading())
     }
 
     /// Returns a deformation with the values of its example.
     pub(crate) fn example(&self, deformation: &str, variant: Option<&str>) -> Result<PageStep, String> {
-        self.begun(deformation, variant, self.opened.artwork.frame(), true)
+        self.first_step(deformation, variant, self.opened.artwork.frame(), true)
     }
 
-    /// Returns a deformation with its first values for artwork in this frame, or with the values of its example if it `shows` one.
-    fn begun(&self, deformation: &str, variant: Option<&str>, frame: Rect, shows: bool) -> Result<PageStep, String> {
+    /// Returns a deformation with its first values for artwork in this frame, or with those of its example.
+    fn first_step(
+        &self,
+        deformation: &str,
+        variant: Option<&str>,
+        frame: Rect,
+        is_example: bool,
+    ) -> Result<PageStep, String> {
         let bending = self.host.registry().get(deformation).map(|e| e.info());
         let info = bending.or_else(|| self.host.first().iter().find(|i| i.name == deformation));
         let info = info.ok_or_else(|| format!("there is no deformation {deformation}"))?;
         let args = match variant {
-            Some(label) => of_variant(info, label, frame, shows)?,
-            None if shows => example(info, frame),
-            None => opening(info, frame),
+            Some(label) => variant_values(info, label, frame, is_example)?,
+            None if is_example => example_values(info, frame),
+            None => opening_values(info, frame),
         };
         Ok(PageStep { deformation: deformation.to_owned(), args, ..PageStep::default() })
     }
@@ -580,13 +591,13 @@ impl Session {
     /// Returns the file that *Save* writes by default.
     fn target(&self) -> PathBuf {
         let saved = self.saved.as_ref().map(|(p, _)| p.clone());
-        saved.or_else(|| self.out().cloned()).unwrap_or_else(|| saving::usual(&self.file))
+        saved.or_else(|| self.out().cloned()).unwrap_or_else(|| saving::default_result(&self.file))
     }
 
     /// Returns the file that a page names.
-    fn place(&self, target: &Target) -> Result<PathBuf, String> {
+    fn target_file(&self, target: &Target) -> Result<PathBuf, String> {
         let Some(name) = &target.name else { return Ok(self.target()) };
-        let named = saving::named(name, &self.file)?;
+        let named = saving::file_beside(name, &self.file)?;
         let folder = target.folder.as_deref().map(str::trim).filter(|f| !f.is_empty() && *f != folder_of(&self.file));
         let Some(folder) = folder else { return Ok(named) };
         let folder = saving::folder(folder, &self.file)?;
@@ -599,14 +610,14 @@ impl Session {
     }
 
     /// Replaces the name of the drawing's file in a message by the drawing's name in the program that waits, if any.
-    pub(crate) fn said(&self, text: &str) -> String {
+    pub(crate) fn with_drawing_name(&self, text: &str) -> String {
         let Purpose::Program { drawing, .. } = &self.purpose else { return text.to_owned() };
         let name = self.file.file_name().unwrap_or_default().to_string_lossy();
         text.replace(&*self.file.to_string_lossy(), drawing).replace(&*name, drawing)
     }
 
     fn refuse_for_program(&self, what: &str) -> Result<(), String> {
-        self.purpose.program().map_or(Ok(()), |name| Err(format!("{what}: {name} waits for this one")))
+        self.purpose.program().map_or(Ok(()), |name| Err(format!("{what}: {name} waits for this drawing")))
     }
 
     /// Confirms the present steps as the result for the program that waits.
@@ -620,57 +631,56 @@ impl Session {
 
     /// Returns the result, if the user has confirmed it.
     pub(crate) fn result(&self) -> Option<Recipe> {
-        self.handed_over.then(|| recipe(&self.kept.now.steps))
+        self.handed_over.then(|| recipe(&self.history.now.steps))
     }
 
     /// Writes the result. Answers with the file's name, or reports that the file exists.
     pub(crate) fn save(&mut self, target: &Target, replace: bool) -> Result<Value, String> {
         self.refuse_for_program("nothing can be saved")?;
-        let to = self.place(target)?;
-        let own = self.saved.as_ref().is_some_and(|(p, _)| saving::same_file(p, &to));
-        if !own && !self.opened.is_result && saving::same_file(&to, &self.file) {
+        let to = self.target_file(target)?;
+        let was_saved = self.saved.as_ref().is_some_and(|(p, _)| saving::same_file(p, &to));
+        if !was_saved && !self.opened.is_result && saving::same_file(&to, &self.file) {
             return Err(format!("{} is the drawing itself; choose another name", to.display()));
         }
-        if self.first.as_ref().is_some_and(|first| saving::same_file(&to, first)) {
+        if self.started_with.as_ref().is_some_and(|file| saving::same_file(&to, file)) {
             return Err(format!("{} is the drawing that was open first; choose another name", to.display()));
         }
-        let asked = self.out().is_some_and(|out| saving::same_file(out, &to));
-        if to.exists() && !own && !asked && !replace {
+        let is_out = self.out().is_some_and(|out| saving::same_file(out, &to));
+        if to.exists() && !was_saved && !is_out && !replace {
             return Ok(json!({ "exists": to.file_name().map(|n| n.to_string_lossy()) }));
         }
-        let (bytes, mut lost) = self.finished(&to, true, &target.picture)?;
+        let (bytes, mut losses) = self.encoded(&to, true, &target.picture)?;
         if let Err(why) = self.host.write(&to, &bytes) {
             return Ok(json!({ "unwritable": why }));
         }
-        let given = self.kept.now.steps.clone();
+        let given = self.history.now.steps.clone();
         if self.present(&given).iter().any(|s| s.hidden) {
-            let waits = given.iter().all(|s| !s.hidden);
-            let which = if waits { "steps whose letters are gone" } else { "hidden steps" };
-            lost.push(format!("{which} are not in the file"));
+            let which = if given.iter().any(|s| s.hidden) { "hidden steps" } else { "steps whose letters are gone" };
+            losses.push(format!("{which} are not in the file"));
         }
         if is_svg(&to) {
-            self.saved = Some((to.clone(), self.kept.now.clone()));
+            self.saved = Some((to.clone(), self.history.now.clone()));
             self.draft.remove();
             self.restored = false;
             if saving::same_file(&to, &self.file) {
-                self.draft = Draft::of(self.drafts.as_deref(), &self.file, &bytes);
+                self.draft = Draft::for_drawing(self.drafts.as_deref(), &self.file, &bytes);
             }
         }
-        Ok(json!({ "written": to.display().to_string(), "warnings": lost }))
+        Ok(json!({ "written": to.display().to_string(), "warnings": losses }))
     }
 
     /// Returns the contents that *Save* would write to this file, for a download.
     pub(crate) fn download(&mut self, target: &Target) -> Result<Value, String> {
         self.refuse_for_program("nothing can be downloaded")?;
-        let to = self.place(target)?;
-        let (bytes, lost) = self.finished(&to, false, &target.picture)?;
+        let to = self.target_file(target)?;
+        let (bytes, losses) = self.encoded(&to, false, &target.picture)?;
         let name = to.file_name().map(|n| n.to_string_lossy());
-        Ok(json!({ "written": name, "bytes": STANDARD.encode(bytes), "warnings": lost }))
+        Ok(json!({ "written": name, "bytes": STANDARD.encode(bytes), "warnings": losses }))
     }
 
     /// Returns the result in the format of the file `to`, and the losses of the format. Unless it `stays` there, pictures are embedded.
-    fn finished(&mut self, to: &Path, stays: bool, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
-        let given = self.finishing();
+    fn encoded(&mut self, to: &Path, stays: bool, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
+        let given = self.result_recipe();
         if saving::has_extension(to, &["toml"]) {
             return Ok((self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new()));
         }
@@ -681,17 +691,15 @@ impl Session {
     /// dropped on the page, or a picture, may not exist as a file.
     fn source(&self) -> Result<(PathBuf, String, Option<String>), String> {
         let content = self.opened.artwork.document().source();
-        let is_there = |holds: &dyn Fn(&[u8]) -> bool| std::fs::read(&self.file).is_ok_and(|bytes| holds(&bytes));
-        if !self.opened.is_result && is_there(&|bytes| bytes == content) {
+        let file_content = |holds: &dyn Fn(&[u8]) -> bool| std::fs::read(&self.file).is_ok_and(|bytes| holds(&bytes));
+        if !self.opened.is_result && file_content(&|bytes| bytes == content) {
             return Ok((self.file.clone(), String::new(), None));
         }
-        let Some((source, is_known)) = saving::source_of(&self.file, content) else {
-            return Err("the drawing has no name".into());
-        };
-        if is_known {
+        let (source, exists) = saving::source_of(&self.file, content).ok_or("the drawing has no name")?;
+        if exists {
             return Ok((source, String::new(), None));
         }
-        if self.opened.is_result && is_there(&|bytes| draft::key(&self.file, bytes) == self.draft.key) {
+        if self.opened.is_result && file_content(&|bytes| draft::key(&self.file, bytes) == self.draft.key) {
             let [result, name] = [&self.file, &source].map(|p| quoted(&p.display().to_string()));
             return Ok((source, format!("pathwarp unwarp {result} -o {name} && "), None));
         }
@@ -702,8 +710,8 @@ impl Session {
 
     /// Returns the command line that writes the same result as *Save*, and the name of the drawing's file if it was written now.
     pub(crate) fn command_line(&mut self, target: &Target) -> Result<Value, String> {
-        let to = self.place(target)?;
-        let (given, mut options) = (self.finishing(), self.opened.artwork.options());
+        let to = self.target_file(target)?;
+        let (given, mut options) = (self.result_recipe(), self.opened.artwork.options());
         let (source, before, written) = self.source()?;
         let name = to.display().to_string();
         let line = |options: &[(String, String)], out: &Path| {
@@ -728,13 +736,13 @@ impl Session {
 }
 
 /// Returns the largest distance between two images of the same point, over a grid in a box.
-fn apart(a: &dyn Map, b: &dyn Map, r: Rect) -> f64 {
+fn largest_distance(a: &dyn Map, b: &dyn Map, r: Rect) -> f64 {
     /// Number of points along a side.
-    const PLACES: u32 = 25;
-    let share = |k: u32| f64::from(k) / f64::from(PLACES - 1);
-    let places = (0..PLACES * PLACES).map(|k| (share(k % PLACES), share(k / PLACES)));
-    let at = places.map(|(x, y)| Point::new(r.x0 + x * r.width(), r.y0 + y * r.height()));
-    at.map(|p| a.point(p).distance(b.point(p))).filter(|d| d.is_finite()).fold(0.0, f64::max)
+    const SAMPLES: u32 = 25;
+    let share = |k: u32| f64::from(k) / f64::from(SAMPLES - 1);
+    let shares = (0..SAMPLES * SAMPLES).map(|k| (share(k % SAMPLES), share(k / SAMPLES)));
+    let points = shares.map(|(x, y)| Point::new(r.x0 + x * r.width(), r.y0 + y * r.height()));
+    points.map(|p| a.point(p).distance(b.point(p))).filter(|d| d.is_finite()).fold(0.0, f64::max)
 }
 
 /// Returns the folder of a file, for display.

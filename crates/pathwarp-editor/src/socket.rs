@@ -1,6 +1,6 @@
 //! One connection of a page: answers its requests in order, and announces changes made by other pages.
 
-use crate::picture::{Picture, Quick};
+use crate::picture::{PathUpdate, Picture};
 use crate::protocol::{Message, Request};
 use crate::session::{Session, Shown};
 use serde_json::{Value, json};
@@ -15,19 +15,19 @@ use tungstenite::{Error, WebSocket};
 /// Largest message in bytes, enough for a dropped drawing.
 const LARGEST_MESSAGE: usize = 256 << 20;
 /// Time after which an idle page learns of changes made by others.
-const GLANCE: Duration = Duration::from_millis(200);
+const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Serves a page until it closes.
 pub(crate) fn run(stream: TcpStream, shared: &Arc<Shared>) -> Result<(), Error> {
-    stream.set_read_timeout(Some(GLANCE))?;
+    stream.set_read_timeout(Some(POLL_INTERVAL))?;
     let config =
         WebSocketConfig::default().max_message_size(Some(LARGEST_MESSAGE)).max_frame_size(Some(LARGEST_MESSAGE));
     let mut page = Page {
         socket: WebSocket::from_raw_socket(stream, Role::Server, Some(config)),
         shared: Arc::clone(shared),
         picture: None,
-        quick: None,
-        seen: shared.pages.changes.load(Ordering::SeqCst),
+        path_update: None,
+        known_changes: shared.pages.changes.load(Ordering::SeqCst),
     };
     loop {
         match page.socket.read() {
@@ -50,9 +50,9 @@ struct Page {
     /// The last picture sent.
     picture: Option<Picture>,
     /// The quick update from that picture to the next draft, if nothing but path data may change.
-    quick: Option<Quick>,
+    path_update: Option<PathUpdate>,
     /// The number of changes that the page has been told.
-    seen: usize,
+    known_changes: usize,
 }
 
 impl Page {
@@ -63,10 +63,10 @@ impl Page {
     /// Announces changes by other pages.
     fn announce(&mut self) -> Result<(), Error> {
         let now = self.shared.pages.changes.load(Ordering::SeqCst);
-        if now == self.seen {
+        if now == self.known_changes {
             return Ok(());
         }
-        self.seen = now;
+        self.known_changes = now;
         let state = self.shared.with_session(|s| s.state());
         self.send(&json!({ "event": "changed", "state": state }))
     }
@@ -78,8 +78,8 @@ impl Page {
         };
         let shared = Arc::clone(&self.shared);
         let mut answer = shared.with_session(|session| {
-            // `said` calls the drawing by its name in the program that waits, if one does.
-            self.respond(session, request).unwrap_or_else(|problem| json!({ "error": session.said(&problem) }))
+            self.respond(session, request)
+                .unwrap_or_else(|problem| json!({ "error": session.with_drawing_name(&problem) }))
         });
         answer["id"] = json!(id);
         self.send(&answer)
@@ -89,7 +89,7 @@ impl Page {
     fn respond(&mut self, session: &mut Session, request: Request) -> Result<Value, String> {
         match request {
             Request::Hello => {
-                (self.picture, self.quick) = (None, None);
+                (self.picture, self.path_update) = (None, None);
                 Ok(json!({ "catalogue": session.catalogue(), "state": session.state() }))
             }
             Request::Background => Ok(json!({ "background": *self.shared.background() })),
@@ -100,22 +100,10 @@ impl Page {
             Request::Ahead { steps, draft } => Ok(json!({ "svg": session.bend(&steps, draft)?.picture()?.text() })),
             Request::Drawn { name, bytes } => Ok(json!({ "svg": session.drawn(&name, &bytes)?.text() })),
             Request::Parts => Ok(json!({ "parts": session.parts()? })),
-            Request::Bend { steps, draft } => {
-                let shown = session.bend(&steps, draft)?;
-                self.show(shown)
-            }
-            Request::Commit { steps, shown } => {
-                let shown = session.commit(steps, shown)?;
-                self.changed(session, shown)
-            }
-            Request::Undo { shown } => {
-                let shown = session.turn(true, shown)?;
-                self.changed(session, shown)
-            }
-            Request::Redo { shown } => {
-                let shown = session.turn(false, shown)?;
-                self.changed(session, shown)
-            }
+            Request::Bend { steps, draft } => session.bend(&steps, draft).and_then(|picture| self.show(picture)),
+            Request::Commit { steps, shown } => session.commit(steps, shown).and_then(|p| self.changed(session, p)),
+            Request::Undo { shown } => session.undo(shown).and_then(|picture| self.changed(session, picture)),
+            Request::Redo { shown } => session.redo(shown).and_then(|picture| self.changed(session, picture)),
             Request::Before => Ok(json!({ "svg": session.before()?.text() })),
             Request::Stretch { steps } => Ok(json!({ "stretch": session.stretch(&steps)? })),
             Request::Opening { deformation, variant, steps, select } => {
@@ -152,14 +140,8 @@ impl Page {
                 Ok(json!({ "done": true }))
             }
             Request::Presets => Ok(json!({ "presets": session.presets()? })),
-            Request::KeepPreset { name } => {
-                session.keep_preset(&name)?;
-                Ok(json!({ "presets": session.presets()? }))
-            }
-            Request::ForgetPreset { name } => {
-                session.forget_preset(&name)?;
-                Ok(json!({ "presets": session.presets()? }))
-            }
+            Request::KeepPreset { name } => Ok(json!({ "presets": session.keep_preset(&name)? })),
+            Request::ForgetPreset { name } => Ok(json!({ "presets": session.forget_preset(&name)? })),
             Request::Preset { name } => Ok(json!({ "steps": session.preset(&name)? })),
             Request::Preimage { steps, at } => session.preimage(&steps, at.into()),
             Request::Renet { steps, values } => session.renet(&steps, values),
@@ -170,8 +152,8 @@ impl Page {
     /// Returns the message with a picture.
     fn show(&mut self, shown: Shown) -> Result<Value, String> {
         let is_draft = shown.is_draft;
-        if let (true, Some(quick), Some(picture)) = (is_draft, &mut self.quick, &mut self.picture)
-            && let Some(changes) = quick.next(&shown.svg)
+        if let (true, Some(update), Some(picture)) = (is_draft, &mut self.path_update, &mut self.picture)
+            && let Some(changes) = update.next(&shown.svg)
         {
             picture.redraw(&changes);
             let mut answer = shown.about;
@@ -179,7 +161,7 @@ impl Page {
             return Ok(answer);
         }
         let picture = shown.picture()?;
-        self.quick = is_draft.then(|| Quick::from(shown.svg, &picture)).flatten();
+        self.path_update = is_draft.then(|| PathUpdate::prepare(shown.svg, &picture)).flatten();
         let mut answer = shown.about;
         answer["picture"] = picture.message(self.picture.as_ref());
         self.picture = Some(picture);
@@ -196,7 +178,7 @@ impl Page {
 
     /// Counts a change that this page has made.
     fn count_change(&mut self) {
-        self.seen = self.shared.pages.changes.fetch_add(1, Ordering::SeqCst) + 1;
+        self.known_changes = self.shared.pages.changes.fetch_add(1, Ordering::SeqCst) + 1;
     }
 }
 

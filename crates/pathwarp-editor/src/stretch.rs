@@ -26,7 +26,8 @@ pub(crate) fn stretch(map: &dyn Map, frame: Rect) -> Value {
         Point::new(frame.x0 + u * frame.width(), frame.y0 + v * frame.height())
     };
     let grid = (0..=rows).flat_map(|j| (0..=columns).map(move |i| at(i as f64, j as f64)));
-    let points: Vec<Value> = grid.map(|p| map.point(p)).map(shown).collect();
+    let point = |p: Point| if p.is_finite() { json!([p.x, p.y]) } else { Value::Null };
+    let points: Vec<Value> = grid.map(|p| point(map.point(p))).collect();
     let middles = (0..rows).flat_map(|j| (0..columns).map(move |i| at(i as f64 + 0.5, j as f64 + 0.5)));
     let factors: Vec<f64> = middles.map(|p| factor(&map.jet(p))).collect();
     // The map may mirror the whole drawing.
@@ -44,10 +45,6 @@ fn factor(jet: &Jet) -> f64 {
     let longest = (0.5 * (a + b) + (0.5 * (a - b)).hypot(c)).sqrt();
     let grows = area.abs() >= 1.0 - SAME_AREA;
     (if grows || longest == 0.0 { longest } else { area.abs() / longest }).copysign(area)
-}
-
-fn shown(p: Point) -> Value {
-    if p.is_finite() { json!([p.x, p.y]) } else { Value::Null }
 }
 
 #[cfg(test)]

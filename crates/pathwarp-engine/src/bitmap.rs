@@ -327,7 +327,7 @@ pub fn background(text: &str) -> Result<Background, String> {
         return Ok(Background(None));
     }
     let color = svgtypes::Color::from_str(text);
-    let c = color.map_err(|_| "is no colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
+    let c = color.map_err(|_| "is not a colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
     Ok(Background(Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha))))
 }
 

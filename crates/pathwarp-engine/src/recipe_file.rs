@@ -65,7 +65,7 @@ pub fn read(catalogue: &dyn Catalogue, file: &Path, external: bool) -> Result<Sa
         let name = file.display();
         return Err(Failure::Input(format!("{name} is a drawing, not a recipe; write: run RECIPE.toml {name}")));
     }
-    let text = String::from_utf8(bytes).map_err(|_| Failure::file(file, "is no recipe: it is not text"))?;
+    let text = String::from_utf8(bytes).map_err(|_| Failure::file(file, "is not a recipe: it is not text"))?;
     from_text(catalogue, &text, file.parent().unwrap_or(Path::new("")), external).map_err(|e| Failure::file(file, e))
 }
 
@@ -98,7 +98,7 @@ fn parse(catalogue: &dyn Catalogue, text: &str, folder: &Folder<'_>) -> Result<S
     }
     let mut options = Given::default();
     for (name, value) in &file.options {
-        let words = as_typed(value).ok_or_else(|| format!("[options] {name}: {MUST_BE_TYPED}"))?;
+        let words = as_typed(value).ok_or_else(|| format!("[options] {name} {MUST_BE_TYPED}"))?;
         // `false` leaves an option at its default.
         for word in words.iter().filter(|word| *word != "false") {
             options.push(name, word).map_err(|e| format!("[options] {e}"))?;
@@ -133,7 +133,7 @@ fn parse_step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_
             }
             SELECT | EXCLUDE => {
                 let selectors = if key == SELECT { &mut step.select } else { &mut step.exclude };
-                *selectors = as_typed(value).ok_or_else(|| format!("{key}: must be a text or a list of them"))?;
+                *selectors = as_typed(value).ok_or_else(|| format!("{key} must be a text or a list of them"))?;
             }
             key => {
                 let params = info.params;
@@ -141,7 +141,7 @@ fn parse_step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_
                     let known: Vec<_> = params.iter().map(|p| p.name).collect();
                     format!("{name} has no parameter `{key}`; its parameters are {}", known.join(", "))
                 })?;
-                for v in as_typed(value).ok_or_else(|| format!("{key}: {MUST_BE_TYPED}"))? {
+                for v in as_typed(value).ok_or_else(|| format!("{key} {MUST_BE_TYPED}"))? {
                     if param.kind == Kind::Flag && v == "false" {
                         continue;
                     }
@@ -158,7 +158,7 @@ fn parse_step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_
 }
 
 /// The problem of a value for which [`as_typed`] returns `None`.
-const MUST_BE_TYPED: &str = "must be a text, number, switch or list of them";
+const MUST_BE_TYPED: &str = "must be a text, a number, true, false or a list of them";
 
 /// Converts the values of a key to words as typed on a command line; `None` if that is impossible.
 fn as_typed(value: &Value) -> Option<Vec<String>> {

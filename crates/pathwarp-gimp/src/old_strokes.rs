@@ -44,7 +44,11 @@ pub(crate) fn split_strokes(
             // The incoming handle of the first anchor carries no geometry and is not stored.
             (false, 2) => points.insert(0, points[0]),
             _ => {
-                let expected = if closed { "a closed stroke must have 3n" } else { "an open stroke must have 3n - 1" };
+                let expected = if closed {
+                    "a closed stroke must have a multiple of three"
+                } else {
+                    "an open stroke must have one less than a multiple of three"
+                };
                 return Err(Error::damaged(offset(w[0]), format!("{expected} points, but has {}", points.len())));
             }
         }

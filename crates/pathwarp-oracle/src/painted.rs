@@ -1,8 +1,8 @@
 //! Painted areas as polygons (of the nonzero rule), with strokes expanded by the renderer.
 
 use crate::polygon::Polygon;
-use kurbo::{BezPath, ParamCurve as _, PathEl, Point};
-use resvg::tiny_skia::{self, Path, PathBuilder, PathSegment, StrokeDash, Transform};
+use kurbo::{CubicBez, ParamCurve as _, Point, QuadBez};
+use resvg::tiny_skia::{Path, PathBuilder, PathSegment, StrokeDash, Transform};
 use resvg::usvg::{self, Node, Tree};
 
 /// The painted area of a drawing: of each path the stroke or, if it has none, the fill.
@@ -12,7 +12,6 @@ pub fn painted(tree: &Tree) -> Polygon {
     Polygon::of_rings(rings.iter().map(Vec::as_slice))
 }
 
-/// Adds the rings of all painted paths of a group.
 fn collect(g: &usvg::Group, out: &mut Vec<Vec<Point>>) {
     for n in g.children() {
         match n {
@@ -43,36 +42,42 @@ fn stroked(path: &Path, stroke: &usvg::Stroke) -> Path {
     scaled(1.0 / ENLARGEMENT, divided(&path).stroke(&style, RESOLUTION).unwrap())
 }
 
-fn to_bez_path(path: &Path) -> BezPath {
-    let point = |p: tiny_skia::Point| Point::new(f64::from(p.x), f64::from(p.y));
-    let element = |s: PathSegment| match s {
-        PathSegment::MoveTo(p) => PathEl::MoveTo(point(p)),
-        PathSegment::LineTo(p) => PathEl::LineTo(point(p)),
-        PathSegment::QuadTo(b, c) => PathEl::QuadTo(point(b), point(c)),
-        PathSegment::CubicTo(b, c, d) => PathEl::CurveTo(point(b), point(c), point(d)),
-        PathSegment::Close => PathEl::ClosePath,
-    };
-    path.segments().map(element).collect()
-}
-
 /// Divides each curve of a path into sixteen parts.
 fn divided(path: &Path) -> Path {
     const PARTS: u32 = 16;
-    let (path, mut out) = (to_bez_path(path), PathBuilder::new());
-    for (i, element) in path.elements().iter().enumerate() {
-        match (element, path.get_seg(i)) {
-            (PathEl::MoveTo(p), _) => out.move_to(p.x as f32, p.y as f32),
-            (PathEl::LineTo(p), _) => out.line_to(p.x as f32, p.y as f32),
-            (PathEl::QuadTo(..) | PathEl::CurveTo(..), Some(curve)) => {
-                for k in 0..PARTS {
-                    let part = curve.subsegment(f64::from(k) / f64::from(PARTS)..f64::from(k + 1) / f64::from(PARTS));
-                    let cubic = part.to_cubic();
-                    let [b, c, d] = [cubic.p1, cubic.p2, cubic.p3].map(|p| (p.x as f32, p.y as f32));
-                    out.cubic_to(b.0, b.1, c.0, c.1, d.0, d.1);
-                }
-            }
-            _ => out.close(),
+    let point = |p: resvg::tiny_skia::Point| Point::new(f64::from(p.x), f64::from(p.y));
+    let mut out = PathBuilder::new();
+    let mut at = Point::ZERO;
+    let curve = |out: &mut PathBuilder, c: CubicBez| {
+        for i in 0..PARTS {
+            let part = c.subsegment(f64::from(i) / f64::from(PARTS)..f64::from(i + 1) / f64::from(PARTS));
+            let [b, c, d] = [part.p1, part.p2, part.p3].map(|p| (p.x as f32, p.y as f32));
+            out.cubic_to(b.0, b.1, c.0, c.1, d.0, d.1);
         }
+    };
+    for s in path.segments() {
+        at = match s {
+            PathSegment::MoveTo(p) => {
+                out.move_to(p.x, p.y);
+                point(p)
+            }
+            PathSegment::LineTo(p) => {
+                out.line_to(p.x, p.y);
+                point(p)
+            }
+            PathSegment::QuadTo(b, c) => {
+                curve(&mut out, QuadBez::new(at, point(b), point(c)).raise());
+                point(c)
+            }
+            PathSegment::CubicTo(b, c, d) => {
+                curve(&mut out, CubicBez::new(at, point(b), point(c), point(d)));
+                point(d)
+            }
+            PathSegment::Close => {
+                out.close();
+                at
+            }
+        };
     }
     out.finish().unwrap()
 }
@@ -83,16 +88,38 @@ fn flatten(path: &Path, out: &mut Vec<Vec<Point>>) {
     const MIN_SAMPLES: f64 = 16.0;
     /// The largest distance of samples, in units.
     const MAX_STEP: f64 = 0.35;
-    let (path, mut ring) = (to_bez_path(path), Vec::new());
-    for (i, element) in path.elements().iter().enumerate() {
-        if let PathEl::MoveTo(p) = element {
-            out.push(std::mem::replace(&mut ring, vec![*p]));
-        } else if let Some(seg) = path.get_seg(i) {
-            let c = seg.to_cubic();
-            let length = (c.p1 - c.p0).hypot() + (c.p2 - c.p1).hypot() + (c.p3 - c.p2).hypot();
-            let is_curve = matches!(element, PathEl::QuadTo(..) | PathEl::CurveTo(..));
-            let n = (length / MAX_STEP).ceil().max(if is_curve { MIN_SAMPLES } else { 1.0 }) as u32;
-            ring.extend((1..=n).map(|k| seg.eval(f64::from(k) / f64::from(n))));
+    let point = |p: resvg::tiny_skia::Point| Point::new(f64::from(p.x), f64::from(p.y));
+    let mut ring: Vec<Point> = Vec::new();
+    let line = |ring: &mut Vec<Point>, to: Point| {
+        let from = *ring.last().unwrap();
+        let n = ((to - from).hypot() / MAX_STEP).ceil().max(1.0);
+        ring.extend((1..=n as u32).map(|i| from.lerp(to, f64::from(i) / n)));
+    };
+    let curve = |ring: &mut Vec<Point>, length: f64, at: &dyn Fn(f64) -> Point| {
+        let n = (length / MAX_STEP).ceil().max(MIN_SAMPLES);
+        ring.extend((1..=n as u32).map(|i| at(f64::from(i) / n)));
+    };
+    for s in path.segments() {
+        match s {
+            PathSegment::MoveTo(p) => {
+                out.push(std::mem::replace(&mut ring, vec![point(p)]));
+            }
+            PathSegment::LineTo(p) => line(&mut ring, point(p)),
+            PathSegment::QuadTo(b, c) => {
+                let (a, b, c) = (*ring.last().unwrap(), point(b), point(c));
+                curve(&mut ring, (b - a).hypot() + (c - b).hypot(), &|t| a.lerp(b, t).lerp(b.lerp(c, t), t));
+            }
+            PathSegment::CubicTo(b, c, d) => {
+                let (a, b, c, d) = (*ring.last().unwrap(), point(b), point(c), point(d));
+                curve(&mut ring, (b - a).hypot() + (c - b).hypot() + (d - c).hypot(), &|t| {
+                    let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
+                    ab.lerp(bc, t).lerp(bc.lerp(cd, t), t)
+                });
+            }
+            PathSegment::Close => {
+                let start = ring[0];
+                line(&mut ring, start);
+            }
         }
     }
     out.push(ring);

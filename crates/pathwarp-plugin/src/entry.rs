@@ -161,7 +161,10 @@ pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault>
             return Err(wrong(format!("the parameter `{}` is not a new name of lower-case words", p.name)));
         }
         if reserved.parameters.contains(&p.name) {
-            return Err(wrong(format!("the parameter `{}` has the name of an option of every command", p.name)));
+            return Err(wrong(format!(
+                "the parameter `{}` has the name of an option of every command; rename it",
+                p.name
+            )));
         }
     }
     let source = written.source.unwrap_or_else(|| "a plug-in".to_owned());
@@ -254,7 +257,7 @@ fn param(w: WrittenParam) -> Result<Param, String> {
     if let Some([min, max]) = w.range {
         let (min, max) = (min.unwrap_or(f64::NEG_INFINITY), max.unwrap_or(f64::INFINITY));
         if min.is_nan() || min > max {
-            return Err(format!("the parameter `{}` has an empty range", out.name));
+            return Err(format!("the parameter `{}` has a range that ends before it begins", out.name));
         }
         let ui = if min.is_finite() && max.is_finite() { (min, max) } else { out.ui };
         out = Param { range: (min, max), ui, ..out };

@@ -21,7 +21,7 @@ pub enum Fault {
     #[error("cannot be started: {0}; a script needs a first line such as #!/usr/bin/env python3")]
     NotStarted(String),
     /// A plug-in has started this program.
-    #[error("is not started, since a plug-in has called pathwarp, and one could call the other without an end")]
+    #[error("is not started: a plug-in has called pathwarp, and the two could call each other without end")]
     Nested,
     /// It ended while an answer was expected.
     #[error("ended ({status}) without giving {expected}{}", quoted(.said))]
@@ -105,7 +105,7 @@ pub enum Fault {
     },
     /// A crease cannot be read.
     #[error(
-        "{0} is no crease, which is line A B C with A or B not 0, perhaps with a box X0 Y0 X1 Y1 unless it is an edge, or circle X Y R with R not 0"
+        "{0} is not a crease; write line A B C with A or B not 0, perhaps with a box X0 Y0 X1 Y1 unless it is an edge, or circle X Y R with R not 0"
     )]
     Crease(String),
     /// A value is not a number.

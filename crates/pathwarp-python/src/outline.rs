@@ -9,7 +9,7 @@ pub(crate) fn path(verbs: &str, coordinates: &[f64]) -> Result<BezPath, String> 
     let mut path = BezPath::new();
     for verb in verbs.chars() {
         if path.elements().is_empty() && verb != 'M' {
-            return Err(format!("the path begins with `{verb}`, not with a move"));
+            return Err(format!("the path begins with `{verb}`; begin it with `M`"));
         }
         path.push(match verb {
             'M' => PathEl::MoveTo(next()?),
@@ -17,7 +17,7 @@ pub(crate) fn path(verbs: &str, coordinates: &[f64]) -> Result<BezPath, String> 
             'Q' => PathEl::QuadTo(next()?, next()?),
             'C' => PathEl::CurveTo(next()?, next()?, next()?),
             'Z' => PathEl::ClosePath,
-            _ => return Err(format!("`{verb}` is none of the verbs M, L, Q, C and Z")),
+            _ => return Err(format!("`{verb}` is not one of the verbs M, L, Q, C and Z")),
         });
     }
     if numbers.next().is_some() || !coordinates.len().is_multiple_of(2) {

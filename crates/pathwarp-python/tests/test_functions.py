@@ -317,7 +317,7 @@ def test_outlines_of_paths_are_of_their_kind():
     for shapes, options, words in (
         ("M0,0 H40", {}, "width"),
         ("M0,0 H40", {"width": 0}, "width"),
-        ("M0,0 H40", {"width": 2, "join": "mitre"}, "join: `mitre` is none of miter"),
+        ("M0,0 H40", {"width": 2, "join": "mitre"}, "join: `mitre` is not one of miter"),
         (SAMPLES / "logo.svg", {"width": 2}, "have their own"),
         ("M0,0 L", {"width": 2}, "path data"),
     ):

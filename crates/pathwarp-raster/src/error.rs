@@ -36,13 +36,13 @@ pub enum Error {
     )]
     TooFar,
     /// A turbulence filter has more octaves than have any effect.
-    #[error("a turbulence filter has {0} octaves, which cannot be drawn; more than 24 change nothing")]
+    #[error("a turbulence filter has {0} octaves, which cannot be drawn; lower them to 24, as more change nothing")]
     Octaves(u32),
     /// The renderer failed.
     #[error("the renderer failed on this drawing; please report it")]
     Renderer,
     /// The scale is not a positive number.
-    #[error("invalid scale {0}: the scale must be a positive number")]
+    #[error("the scale {0} is not a positive number")]
     BadScale(f32),
     /// The bytes are not a picture that this crate can read.
     #[error("not a readable picture: {0}")]

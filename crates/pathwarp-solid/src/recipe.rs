@@ -176,8 +176,8 @@ impl Builder<'_> {
         }
         if let Some(step) = out.steps.last_mut().filter(|_| change > SETTLED) {
             step.warn(format!(
-                "the boxes to which percentages of later steps refer were not found again, and differ by {change:.1e} of their size: the \
-                 result is not the source; give those steps lengths instead"
+                "the boxes that percentages of later steps refer to could not be restored, and are off by {change:.1e} of their size: the result \
+                 differs from the source; give those steps lengths instead"
             ));
         }
         Ok(out)

@@ -180,7 +180,9 @@ pub enum GeometryError {
     #[error("the tolerance {0} is not a positive, finite number; give the largest distance that is allowed")]
     Tolerance(f64),
     /// The crossings of an area's edges could not be determined.
-    #[error("how the edges of {shape} cross was not found; another tolerance may help, or leave this shape out")]
+    #[error(
+        "the crossings of the edges of {shape} could not be determined; try another tolerance, or leave this shape out"
+    )]
     Crossings {
         /// The shape's id.
         shape: String,

@@ -640,7 +640,7 @@ pub(crate) enum FormulaError {
     BadName(String),
     #[error("has a test with only one outcome: write TEST ? FORMULA : FORMULA")]
     OneOutcome,
-    #[error("has too many operations")]
+    #[error("has too many operations; simplify it")]
     TooLong,
     #[error("has a formula that is not finite here: `{0}`")]
     NotFinite(String),

@@ -164,8 +164,8 @@ impl Recipe {
         let mut out = self.build_in(registry, &frames, portions, budget)?;
         if let Some(step) = out.whole.steps.last_mut().filter(|_| change > SETTLED) {
             step.warn(format!(
-                "the boxes that percentages of the later steps refer to were not found again, and differ by {change:.1e} of their size: \
-                 the result is not the source; give those steps lengths instead"
+                "the boxes that percentages of later steps refer to could not be restored, and are off by {change:.1e} of their size: the result \
+                 differs from the source; give those steps lengths instead"
             ));
         }
         Ok(out)

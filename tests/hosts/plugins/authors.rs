@@ -163,7 +163,7 @@ fn mistakes_are_told_by_their_kind() {
     }
     let crease = [("write(\"ok\\n\")", "write(\"crease line 0 0 5\\nok\\n\")")];
     let (told, _) = s.expect(1, &["check", &template(&s, "creased", &crease)]);
-    assert!(told.contains("FAIL  build") && told.contains("`crease line 0 0 5` is no crease"), "{told}");
+    assert!(told.contains("FAIL  build") && told.contains("`crease line 0 0 5` is not a crease"), "{told}");
 }
 
 #[test]

@@ -398,7 +398,7 @@ fn kinks_are_named_in_space() {
     assert!(warned.contains("kinks at 1 of 1 joints") && warned.contains("30.0"), "{warned}");
     assert!(built(&[straight]).unwrap().warnings.is_empty());
     for (more, problem) in [
-        (&[("side", "0:0,0,0")][..], "vanishes"),
+        (&[("side", "0:0,0,0")][..], "has no length"),
         (&[("side", "2:0,1,0 3:0,2,0")], "would tear"),
         (&[("spline", "true"), ("up", "7:0,0,1")], "0 to 6"),
         (&[("spline", "true"), ("shear", "2,0:0,0,1:0,0,1")], "no deeper level"),

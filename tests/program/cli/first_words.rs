@@ -114,7 +114,11 @@ fn values_and_names_that_spaces_have_torn() {
     refused(
         dir.path(),
         &[
-            ("warp a.svg --bend -40 % -o o.svg", 2, "% is no file; a number and its unit are one word: --bend -40%"),
+            (
+                "warp a.svg --bend -40 % -o o.svg",
+                2,
+                "there is no file %; a number and its unit are one word: --bend -40%",
+            ),
             ("warp a.svg --bend=-40 % -o o.svg", 2, "--bend -40%"),
             ("affine a.svg --move-x 10 mm -o o.svg", 2, "--move-x 10mm"),
             (
@@ -136,7 +140,7 @@ fn values_and_names_that_spaces_have_torn() {
             ("warp a.svg art/cat.svg", 2, "to write to art/cat.svg: -o art/cat.svg"),
             ("warp my logo.svg -o o.svg", 2, "a name with spaces needs quotes: 'my logo.svg'"),
             ("warp gone.svg a.svg", 3, "gone.svg: there is no such file"),
-            ("warp a.svg to b.svg", 2, "to is no file; the result is named with -o b.svg"),
+            ("warp a.svg to b.svg", 2, "there is no file to; name the result with -o b.svg"),
             ("warp a.svg into", 2, "-o OUT.svg"),
             ("render a.svg out.png", 2, "-o out.png"),
             ("render my logo.svg", 2, "a name with spaces needs quotes: 'my logo.svg'"),

@@ -31,7 +31,7 @@ fn drawings_are_rendered_in_every_format() {
     let (_, said) = expect_code(2, &["render", &logo, "-o", &at("c.jpg"), "--background", "none"]);
     assert!(said.contains("a JPEG has no transparency"), "{said}");
     let (_, said) = expect_code(2, &["render", &logo, "--background", "reddish"]);
-    assert!(said.contains("is no colour"), "{said}");
+    assert!(said.contains("is not a colour"), "{said}");
 }
 
 #[test]

@@ -55,7 +55,7 @@ pub(super) fn deform(
     let bends = recipe.steps.iter().any(|s| edits::info(&s.deformation).is_none());
     let is_for_edits = |name: &&str| EDIT_OPTIONS.iter().chain(&SHARED).any(|known| known == name);
     if let Some(other) = given.names().find(|name| !bends && !is_for_edits(name)) {
-        return Err(Failure::usage(format!("--{other} is for steps that bend; {name} does not")).into());
+        return Err(Failure::usage(format!("--{other} is for steps that bend; {name} does not bend")).into());
     }
     Ok(pipeline::run(registry, &recipe, &given, None)?)
 }

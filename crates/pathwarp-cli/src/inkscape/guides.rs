@@ -38,7 +38,7 @@ pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[Stri
     let mut guides = labelled(info, &open, objects, &selected);
     let wanted = match call.value(GUIDES) {
         None | Some(AUTOMATIC) => None,
-        Some(n) => Some(n.parse::<usize>().map_err(|_| Failure::usage(format!("`{n}` is no number of guides")))?),
+        Some(n) => Some(n.parse::<usize>().map_err(|_| Failure::usage(format!("`{n}` is not a number of guides")))?),
     };
     // A path, a file or points given in the dialog replace guides.
     let has_alternative = || info.params.iter().any(|p| is_alternative(p) && is_given(p));

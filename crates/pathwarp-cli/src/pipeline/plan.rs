@@ -110,7 +110,9 @@ impl Inputs<'_> {
             )));
         }
         if options.preview.as_deref().is_some_and(|p| !is_pattern(p)) {
-            return Err(Failure::usage(format!("--preview draws one {kind}; give one, or a name with {{stem}}")));
+            return Err(Failure::usage(format!(
+                "--preview draws one {kind}; give one {kind}, or a name with {{stem}}"
+            )));
         }
         if let Some((option, _)) = files_written(catalogue, recipe).next() {
             return Err(Failure::usage(format!("--{option} writes one file; give one {kind}")));
@@ -247,7 +249,7 @@ fn drawings_in(folder: &Path, options: &CommonOptions, out: &mut Vec<InputFile>)
 fn refused(entry: &DirEntry, folder: &Path, external: bool) -> Option<&'static str> {
     let path = entry.path();
     if !path.is_file() {
-        return Some("is no regular file");
+        return Some("is not a regular file");
     }
     let leaves = || match (path.canonicalize(), folder.canonicalize()) {
         (Ok(file), Ok(folder)) => !file.starts_with(folder),

@@ -9,18 +9,17 @@ import { isCaption } from "./names";
 import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } from "./types";
 
 /** Tolerance of curves while something is dragged, in px of the screen. */
-const DRAFT = 0.35;
-/** The event with the times at which a draft was requested, answered and shown. */
-const DRAFTED = "pathwarp-drafted";
+const DRAFT_TOLERANCE = 0.35;
+/** The event with the times at which a draft was requested, answered and shown; tests measure speed by it. */
+const DRAFT_EVENT = "pathwarp-drafted";
 /** The pause after which keys become one change, in ms. */
-const KEYS = 500;
-
+const KEY_PAUSE = 500;
 /** The least visible distance, in mm. */
-const SEEN = 0.05;
-
+const VISIBLE_MM = 0.05;
 /** Parameters that determine the number of control points of a net. */
-const NET = new Set(["degree", "cells", "spline"]);
+const NET_PARAMS = new Set(["degree", "cells", "spline"]);
 
+/** Changes that are told to listeners: `values` are those of the edited step, `link` is the connection, `report` the messages. */
 export type Change = "state" | "steps" | "handles" | "values" | "report" | "link";
 
 /** The view that shows pictures. */
@@ -46,6 +45,7 @@ export class App {
   appends = false;
   /** Selectors of the parts that no step bends. */
   locks: string[] = [];
+  /** The geometry of each step's parameters, from which handles are made. */
   grips: StepGrips[] = [];
   /** The indices of steps for parts that the drawing lacks. */
   gone: number[] = [];
@@ -64,10 +64,12 @@ export class App {
   hold: (() => void) | null = null;
   screen: Screen = { show: () => {}, pixel: 1, reveal: () => {} };
 
-  private listeners: ((change: Change) => void)[] = [];
-  private isBusy = false;
-  private isWanted = false;
-  private since = 0;
+  private listeners: { changes: Change[]; listener: () => void }[] = [];
+  /** `true` while a draft is being made, and if another one is to follow. */
+  private isDrafting = false;
+  private isDraftWanted = false;
+  /** The time of the event that the next draft shows, in ms. */
+  private draftedEventTime = 0;
   /** The queue of changes to the steps. */
   private turns: Promise<unknown> = Promise.resolve();
   /** The last commit; the server answers commits in order. */
@@ -75,7 +77,7 @@ export class App {
   /** The number of commits that the server has refused. */
   private refusals = 0;
   /** The timer that commits the steps after keys have moved a handle; 0 if none runs. */
-  private pause = 0;
+  private commitTimer = 0;
   readonly connection: Connection;
 
   constructor() {
@@ -83,10 +85,10 @@ export class App {
       () => void this.begin(),
       () => {
         this.isConnected = false;
-        this.endPause();
+        this.stopCommitTimer();
         this.tell("link");
       },
-      (news) => void this.hear(news),
+      (news) => void this.takeNews(news),
     );
   }
 
@@ -95,12 +97,13 @@ export class App {
     return this.isConnected && !this.isDone;
   }
 
-  listen(listener: (change: Change) => void): void {
-    this.listeners.push(listener);
+  /** Calls a listener after these changes. */
+  listen(changes: Change[], listener: () => void): void {
+    this.listeners.push({ changes, listener });
   }
 
   tell(change: Change): void {
-    for (const listener of this.listeners) listener(change);
+    for (const { changes, listener } of this.listeners) if (changes.includes(change)) listener();
   }
 
   get step(): Step | undefined {
@@ -183,8 +186,8 @@ export class App {
     });
   }
 
-  /** The selectors of the edited step; empty for the whole drawing. */
-  get chosen(): string[] {
+  /** The selectors of the edited step's parts; empty for the whole drawing. */
+  get selectors(): string[] {
     return this.step?.select ?? [];
   }
 
@@ -192,8 +195,8 @@ export class App {
   scope(select: string[]): Promise<void> {
     return this.inTurn(async () => {
       const { step, selected } = this;
-      if (!step || this.isFirst(step) || (select.length === 0 && this.chosen.length === 0)) return;
-      const answer = await this.attempt(() => this.connection.ask({ do: "scope", steps: this.visible, select }));
+      if (!step || this.isFirst(step) || (select.length === 0 && this.selectors.length === 0)) return;
+      const answer = await this.request({ do: "scope", steps: this.visible, select });
       if (!answer?.step) return;
       this.steps = this.steps.map((s, i) => (i === selected ? answer.step! : s));
       this.tell("steps");
@@ -218,41 +221,35 @@ export class App {
   }
 
   /** Shows a draft of the present steps. While one is being made, only the newest request is kept. */
-  draft(since: number): void {
-    this.since = since;
-    if (this.isBusy) {
-      this.isWanted = true;
-      return;
-    }
-    this.isBusy = true;
-    void this.drafts();
-  }
-
-  private async drafts(): Promise<void> {
+  async draft(eventTime: number): Promise<void> {
+    this.draftedEventTime = eventTime;
+    this.isDraftWanted = true;
+    if (this.isDrafting) return;
+    this.isDrafting = true;
     do {
-      this.isWanted = false;
-      const start = this.since;
+      this.isDraftWanted = false;
+      const start = this.draftedEventTime;
       await this.attempt(async () => {
         const asked = performance.now();
-        const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
+        const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT_TOLERANCE * this.screen.pixel });
         const answered = performance.now();
         this.take(answer);
         const detail = { start, asked, answered, shown: performance.now(), size: this.connection.size };
-        window.dispatchEvent(new CustomEvent(DRAFTED, { detail }));
+        window.dispatchEvent(new CustomEvent(DRAFT_EVENT, { detail }));
       });
-    } while (this.isWanted);
-    this.isBusy = false;
+    } while (this.isDraftWanted);
+    this.isDrafting = false;
   }
 
   /** Stores the present steps, with a state to undo. */
   commit(): Promise<void> {
-    this.lastCommit = this.committed();
+    this.lastCommit = this.sendCommit();
     return this.lastCommit;
   }
 
-  private async committed(): Promise<void> {
-    this.isWanted = false;
-    this.endPause();
+  private async sendCommit(): Promise<void> {
+    this.isDraftWanted = false;
+    this.stopCommitTimer();
     const done = await this.attempt(async () => {
       const answer = await this.connection.ask({ do: "commit", steps: this.steps, shown: this.selected + 1 });
       this.isProposal = false;
@@ -271,13 +268,13 @@ export class App {
   /** Commits if no other key follows for a while. */
   commitSoon(): void {
     this.isDragging = true;
-    clearTimeout(this.pause);
-    this.pause = window.setTimeout(() => void this.flush(), KEYS);
+    clearTimeout(this.commitTimer);
+    this.commitTimer = window.setTimeout(() => void this.flush(), KEY_PAUSE);
   }
 
   /** Commits changes made by keys so far, if any. */
   async flush(): Promise<void> {
-    if (this.endPause()) await this.commit();
+    if (this.stopCommitTimer()) await this.commit();
   }
 
   /** Waits until the server has stored all changes. Returns `false` if it refuses some. */
@@ -298,10 +295,11 @@ export class App {
     field.focus({ preventScroll: true });
   }
 
-  private endPause(): boolean {
-    if (this.pause === 0) return false;
-    clearTimeout(this.pause);
-    this.pause = 0;
+  /** Returns `true` if a timer ran. */
+  private stopCommitTimer(): boolean {
+    if (this.commitTimer === 0) return false;
+    clearTimeout(this.commitTimer);
+    this.commitTimer = 0;
     this.isDragging = false;
     return true;
   }
@@ -310,7 +308,7 @@ export class App {
   cancel(step: Step, before: Step): void {
     this.hold = null;
     this.isDragging = false;
-    this.isWanted = false;
+    this.isDraftWanted = false;
     this.steps = this.steps.map((s) => (s === step ? before : s));
     void this.refresh();
     this.tell("values");
@@ -328,17 +326,15 @@ export class App {
   async turn(direction: "undo" | "redo"): Promise<void> {
     if (this.hold) return direction === "undo" ? this.hold() : undefined;
     this.takeTyped();
-    return this.inTurn(() => this.turned(direction));
-  }
-
-  private async turned(direction: "undo" | "redo"): Promise<void> {
-    if (!this.state?.[direction]) return;
-    await this.attempt(async () => {
-      const answer = await this.connection.ask({ do: direction, shown: null });
-      // Later pictures are sent as changes to this one.
-      this.screen.show(answer);
-      await this.load(answer.state!);
-      this.screen.reveal();
+    return this.inTurn(async () => {
+      if (!this.state?.[direction]) return;
+      await this.attempt(async () => {
+        const answer = await this.connection.ask({ do: direction, shown: null });
+        // Later pictures are sent as changes to this one.
+        this.screen.show(answer);
+        await this.load(answer.state!);
+        this.screen.reveal();
+      });
     });
   }
 
@@ -350,50 +346,42 @@ export class App {
 
   /** Replaces the edited step, or appends one if requested. */
   choose(deformation: string, args: Record<string, string[]>, variant: string | null = null): Promise<void> {
-    const { appends } = this;
+    let { appends } = this;
     this.appends = false;
-    return this.inTurn(() => this.replaced(deformation, args, appends, variant));
+    return this.inTurn(async () => {
+      if (this.deformation(deformation)?.first) return this.insertEdit(deformation);
+      // An edit is not replaced by a deformation.
+      appends ||= this.isFirst(this.step);
+      const at = appends ? this.steps.length : this.selected;
+      const step = await this.opening(deformation, this.steps.slice(0, at), variant, this.selectors);
+      if (!step) return;
+      Object.assign(step.args, args);
+      await this.commitNew(this.steps.toSpliced(at, 1, step), at);
+    });
   }
 
-  private async replaced(deformation: string, args: Record<string, string[]>, appends: boolean, variant: string | null): Promise<void> {
-    if (this.deformation(deformation)?.first) return this.prepared(deformation);
-    // An edit is not replaced by a deformation.
-    appends ||= this.isFirst(this.step);
-    const at = appends ? this.steps.length : this.selected;
-    const before = this.steps.slice(0, at);
-    const step = await this.opening(deformation, before, variant, this.chosen);
-    if (!step) return;
-    Object.assign(step.args, args);
-    this.steps = appends ? [...this.steps, step] : this.steps.map((s, i) => (i === at ? step : s));
-    if (this.steps.length === 0) this.steps = [step];
-    this.selected = Math.min(at, this.steps.length - 1);
+  /** Stores steps with a new one, and shows all of it, since it may need more room. */
+  private async commitNew(steps: Step[], selected: number): Promise<void> {
+    this.steps = steps;
+    this.selected = Math.min(selected, steps.length - 1);
     this.tell("steps");
     this.dropHandles();
-    await this.proposed();
-  }
-
-  private async proposed(): Promise<void> {
     await this.commit();
     this.isWorkedOn = false;
     this.tell("steps");
-    // The shape may need more room than the last one.
     this.screen.reveal();
   }
 
   /** Inserts an edit before all deformations, in the order of the catalogue; there is one of each kind. */
-  private async prepared(deformation: string): Promise<void> {
+  private async insertEdit(deformation: string): Promise<void> {
     const others = this.isProposal ? [] : this.steps;
     const known = others.findIndex((s) => s.deformation === deformation && !isCaption(s));
-    if (known >= 0) return this.choosing(known);
+    if (known >= 0) return this.showStep(known);
     const step = await this.opening(deformation, []);
     if (!step) return;
     const rank = (s: Step) => this.catalogue.findIndex((d) => d.name === s.deformation);
     const at = others.filter((s) => this.isFirst(s) && rank(s) < rank(step)).length;
-    this.steps = others.toSpliced(at, 0, step);
-    this.selected = at;
-    this.tell("steps");
-    this.dropHandles();
-    await this.proposed();
+    await this.commitNew(others.toSpliced(at, 0, step), at);
   }
 
   /** Inserts words after existing ones, before all other steps. Returns their step, which is stored when it is committed. */
@@ -415,35 +403,33 @@ export class App {
 
   /** Replaces the list of steps. */
   arrange(steps: Step[], selected: number): Promise<void> {
-    return this.inTurn(() => this.arranged(steps, selected));
-  }
-
-  private async arranged(steps: Step[], selected: number): Promise<void> {
-    this.steps = steps;
-    this.appends = false;
-    this.selected = Math.max(0, Math.min(selected, steps.length - 1));
-    this.tell("steps");
-    this.dropHandles();
-    await this.commit();
-    if (this.steps.length === 0 && this.state) await this.load(this.state);
-    this.tell("steps");
+    return this.inTurn(async () => {
+      this.steps = steps;
+      this.appends = false;
+      this.selected = Math.max(0, Math.min(selected, steps.length - 1));
+      this.tell("steps");
+      this.dropHandles();
+      await this.commit();
+      if (this.steps.length === 0 && this.state) await this.load(this.state);
+      this.tell("steps");
+    });
   }
 
   select(step: number): Promise<void> {
-    return this.inTurn(() => this.choosing(step));
+    return this.inTurn(() => this.showStep(step));
   }
 
-  private async choosing(step: number): Promise<void> {
+  private async showStep(step: number): Promise<void> {
     this.selected = step;
     this.tell("steps");
     await this.refresh();
   }
 
-  /** Sets a parameter of the edited step. */
+  /** Sets a parameter of the edited step: `isDone` stores it, otherwise a draft is shown. */
   set(name: string, values: string[], isDone: boolean): void {
     const { step } = this;
     if (!step) return;
-    if (isDone && NET.has(name) && this.handles?.net) return void this.inTurn(() => this.renet({ [name]: values }));
+    if (isDone && NET_PARAMS.has(name) && this.handles?.net) return void this.inTurn(() => this.renet({ [name]: values }));
     // Each shape has different adjust values.
     const { presets } = this.deformation(step.deformation)?.gallery ?? {};
     if (name === presets) for (const [other, { adjust }] of Object.entries(this.grips[this.selected]?.params ?? {})) if (adjust) delete step.args[other];
@@ -454,14 +440,13 @@ export class App {
       for (const other of instead.others) delete step.args[other];
       if (instead.with) step.args[instead.with[0]] ??= [instead.with[1]];
     }
-    if (isDone) void this.commit();
-    else this.draft(performance.now());
+    void (isDone ? this.commit() : this.draft(performance.now()));
   }
 
   /** Sets a parameter by a key; keys that follow belong to the same change. */
   setSoon(name: string, values: string[]): void {
     // A net's points are recomputed at once.
-    if (NET.has(name) && this.handles?.net) return this.set(name, values, true);
+    if (NET_PARAMS.has(name) && this.handles?.net) return this.set(name, values, true);
     this.set(name, values, false);
     this.commitSoon();
     this.tell("values");
@@ -484,11 +469,11 @@ export class App {
 
   /** Changes the number of control points of the step's net, which bends as before. */
   private async renet(values: Record<string, string[]>): Promise<void> {
-    const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
+    const answer = await this.request({ do: "renet", steps: this.visible, values });
     if (!answer?.step) return this.tell("steps");
     const [a, b] = this.state?.toPx ?? [1, 0];
-    const mm = ((answer.moved ?? 0) * Math.hypot(a, b) * 25.4) / 96;
-    if (mm >= SEEN) toast(`The shape has moved by up to ${mm.toFixed(mm < 10 ? 2 : 0)} mm: so few points cannot hold it`);
+    const mm = ((answer.moved ?? 0) * Math.hypot(a, b) * 25.4) / 96; // A px is 1/96 in.
+    if (mm >= VISIBLE_MM) toast(`The shape has moved by up to ${mm.toFixed(mm < 10 ? 2 : 0)} mm: so few points cannot hold it`);
     this.steps = this.steps.map((s, i) => (i === this.selected ? answer.step! : s));
     this.tell("steps");
     this.dropHandles();
@@ -499,12 +484,13 @@ export class App {
     return this.grips[this.selected]?.params[name];
   }
 
-  /** Returns the radius of a circle around which the artwork would fit; `null` if it fits, or is stretched. */
-  tooSmall(name: string): number | null {
+  /** Returns the least radius around which the artwork fits, if it is longer than its full circle and is not stretched; else `null`. */
+  leastRadius(name: string): number | null {
     const [circle, frame, step] = [this.grip(name)?.circle, this.grips[this.selected]?.frame, this.step];
     if (!circle || !frame || name !== "along" || ["stretch", "copies", "width"].some((other) => step?.args[other])) return null;
-    const least = frame[2] / (Math.abs(circle[4] - circle[3]) * (Math.PI / 180));
-    return circle[2] < least && Math.abs(Math.abs(circle[4] - circle[3]) - 360) < 1e-6 ? least : null;
+    const [, , radius, start, end] = circle;
+    const least = frame[2] / (Math.abs(end - start) * (Math.PI / 180));
+    return radius < least && Math.abs(Math.abs(end - start) - 360) < 1e-6 ? least : null;
   }
 
   private take(answer: Answer): void {
@@ -539,13 +525,13 @@ export class App {
   }
 
   /** Adopts changes of the steps by another page. */
-  private async hear(news: Answer): Promise<void> {
+  private async takeNews(news: Answer): Promise<void> {
     if (news.event !== "changed" || !news.state) return;
     if (this.isDragging) {
       // A drag in the same drawing takes precedence.
       if (news.state.drawing === this.state?.drawing) return;
       this.hold?.();
-      this.endPause();
+      this.stopCommitTimer();
     }
     const { file } = this.state ?? news.state;
     await this.load(news.state);
@@ -562,6 +548,11 @@ export class App {
     }
   }
 
+  /** Asks the server, and shows its message if it refuses. */
+  request(question: Parameters<Connection["ask"]>[0]): Promise<Answer | null> {
+    return this.attempt(() => this.connection.ask(question));
+  }
+
   fail(problem: string | null): void {
     this.problem = problem;
     this.tell("report");
@@ -574,17 +565,18 @@ export class App {
       if (!handles) return null;
       const denser = handles.denser(at, reach);
       if (denser) await this.renet(denser);
-      else if (!(await this.added(handles, at, others, reach))) return null;
+      else if (!(await this.addPoints(handles, at, others, reach))) return null;
       return this.handles?.nearest(at)?.key ?? null;
     });
   }
 
-  private async added(handles: Handles, at: XY, others: XY[], reach: number): Promise<boolean> {
-    const places = handles.isFree(at, reach) ? [at, ...others] : [at];
+  /** Returns `false` if no point can be added at `at`. */
+  private async addPoints(handles: Handles, at: XY, others: XY[], reach: number): Promise<boolean> {
+    const points = handles.isFree(at, reach) ? [at, ...others] : [at];
     // A pin holds the artwork under the pointer.
-    const sources = handles.pairs ? await Promise.all(places.map((p) => this.preimage(p))) : places;
+    const sources = handles.addsPins ? await Promise.all(points.map((p) => this.preimage(p))) : points;
     if (this.handles !== handles || !sources[0]) return false;
-    const isAdded = places.map((p, i) => sources[i] != null && handles.add(p, sources[i]!, reach));
+    const isAdded = points.map((p, i) => sources[i] != null && handles.add(p, sources[i]!, reach));
     if (!isAdded[0]) return false;
     this.tell("handles");
     await this.commit();
@@ -596,15 +588,15 @@ export class App {
     for (let k = this.visible.length; k > 0; k--) {
       const steps = this.visible.slice(0, k);
       if (this.isFirst(steps[k - 1]) || steps[k - 1]?.hidden || this.gone.includes(k - 1)) continue;
-      at = (await this.attempt(() => this.connection.ask({ do: "preimage", steps, at })))?.at ?? at;
+      at = (await this.request({ do: "preimage", steps, at }))?.at ?? at;
     }
     return at;
   }
 
   /** Returns the point of the artwork that the step maps to `at`. */
   private async preimage(at: XY): Promise<XY | null> {
-    const answer = await this.attempt(() => this.connection.ask({ do: "preimage", steps: this.visible, at }));
-    if (answer?.at === null) this.fail("No place of the artwork comes to lie there");
-    return answer?.at ?? null;
+    const source = (await this.request({ do: "preimage", steps: this.visible, at }))?.at;
+    if (source === null) this.fail("No place of the artwork comes to lie there");
+    return source ?? null;
   }
 }

@@ -4,9 +4,9 @@ import type { XY } from "./types";
 
 type Affine = [number, number, number, number, number, number];
 
-/** The smallest and largest magnification that users can choose; fitting a drawing may exceed it. */
-const RANGE: XY = [0.01, 64];
-const FITTED: XY = [1e-4, 1e5];
+/** The smallest and largest magnification that users can choose, and those for fitting a drawing. */
+const ZOOM_RANGE: XY = [0.01, 64];
+const FIT_RANGE: XY = [1e-4, 1e5];
 
 export class Camera {
   /** The scale in screen = scale · px + shift. */
@@ -46,7 +46,7 @@ export class Camera {
 
   /** Magnifies by a factor around a point of the screen. */
   zoom(factor: number, [x, y]: XY): void {
-    const scale = Math.min(Math.max(this.scale * factor, Math.min(RANGE[0], this.scale)), Math.max(RANGE[1], this.scale));
+    const scale = Math.min(Math.max(this.scale * factor, Math.min(ZOOM_RANGE[0], this.scale)), Math.max(ZOOM_RANGE[1], this.scale));
     const by = scale / this.scale;
     this.shift = [x - by * (x - this.shift[0]), y - by * (y - this.shift[1])];
     this.scale = scale;
@@ -55,7 +55,7 @@ export class Camera {
   /** Centres a box of the drawing, two corners in px, in a view of this size. */
   fit([x0, y0, x1, y1]: [number, number, number, number], [width, height]: XY): void {
     const scale = Math.min(width / Math.max(x1 - x0, 1e-9), height / Math.max(y1 - y0, 1e-9));
-    this.scale = Math.min(Math.max(scale, FITTED[0]), FITTED[1]);
+    this.scale = Math.min(Math.max(scale, FIT_RANGE[0]), FIT_RANGE[1]);
     this.shift = [(width - this.scale * (x0 + x1)) / 2, (height - this.scale * (y0 + y1)) / 2];
   }
 }

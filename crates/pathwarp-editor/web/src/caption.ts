@@ -15,6 +15,7 @@ export class Caption {
   private box = byId("caption-box");
   private text = byId<HTMLTextAreaElement>("caption-text");
   private step: Step | null = null;
+  /** The words when typing began; empty for new ones. */
   private before = "";
 
   constructor(private app: App, private stage: Stage, private sketching: Sketching) {
@@ -51,9 +52,9 @@ export class Caption {
     if (this.box.hidden || !at) return;
     const [x, y] = this.stage.camera.toScreen(at);
     const { clientWidth, clientHeight } = this.stage.svg;
-    const within = (v: number, most: number) => Math.min(Math.max(v, 0), Math.max(most, 0));
-    this.box.style.left = `${within(x, clientWidth - this.box.offsetWidth)}px`;
-    this.box.style.top = `${within(y + BELOW, clientHeight - this.box.offsetHeight)}px`;
+    const clamp = (v: number, most: number) => Math.min(Math.max(v, 0), Math.max(most, 0));
+    this.box.style.left = `${clamp(x, clientWidth - this.box.offsetWidth)}px`;
+    this.box.style.top = `${clamp(y + BELOW, clientHeight - this.box.offsetHeight)}px`;
   }
 
   private typed(): void {

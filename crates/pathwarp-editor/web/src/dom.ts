@@ -1,21 +1,19 @@
 // Small helpers for elements.
 
-type Attributes = Record<string, string | number | boolean | ((event: never) => void) | undefined>;
+type Attributes = Record<string, string | number | boolean | undefined>;
 type Child = Node | string | null | undefined | false;
 
 const SVG = "http://www.w3.org/2000/svg";
 
 function fill<E extends Element>(element: E, attributes: Attributes, children: Child[]): E {
   for (const [name, value] of Object.entries(attributes)) {
-    if (value === undefined || value === false) continue;
-    if (typeof value === "function") element.addEventListener(name.slice(2), value as unknown as EventListener);
-    else element.setAttribute(name, value === true ? "" : String(value));
+    if (value !== undefined && value !== false) element.setAttribute(name, value === true ? "" : String(value));
   }
   for (const child of children) if (child) element.append(child);
   return element;
 }
 
-/** Creates an HTML element; attributes that are functions become listeners, named `onclick` and so on. */
+/** Creates an HTML element. Attributes that are `true` are present without a value; those that are `false` are omitted. */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K, attributes: Attributes = {}, ...children: Child[]
 ): HTMLElementTagNameMap[K] {
@@ -29,12 +27,31 @@ export function s<K extends keyof SVGElementTagNameMap>(
   return fill(document.createElementNS(SVG, tag) as SVGElementTagNameMap[K], attributes, children);
 }
 
+/** Creates a button that reacts to clicks. */
+export function button(attributes: Attributes, click: (e: MouseEvent) => void, ...children: Child[]): HTMLButtonElement {
+  const element = h("button", { type: "button", ...attributes }, ...children);
+  element.addEventListener("click", click);
+  return element;
+}
+
+/** Receives the files chosen in a field, also the same one again. */
+export function onFile(field: HTMLInputElement, take: (file: File) => void): void {
+  field.addEventListener("change", () => {
+    const file = field.files?.[0];
+    field.value = "";
+    if (file) take(file);
+  });
+}
+
 /** Returns the element of the page with this id. */
 export function byId<E extends Element = HTMLElement>(id: string): E {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page has no #${id}`);
   return found as unknown as E;
 }
+
+/** The directions of the arrow keys on the screen. */
+export const ARROWS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 /** Returns `true` if text is typed into this element. */
 export function isTyping(target: EventTarget | null): target is HTMLElement {

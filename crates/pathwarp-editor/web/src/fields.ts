@@ -9,8 +9,10 @@ export interface Quantity {
   unit: string;
 }
 
+/** The length of a mm, in px. */
+export const MM = 96 / 25.4;
 /** The units of length, in px. */
-const LENGTHS: Record<string, number> = { px: 1, in: 96, mm: 96 / 25.4, cm: 96 / 2.54, m: 96 / 0.0254, pt: 96 / 72, pc: 16, q: 96 / 101.6 };
+const LENGTHS: Record<string, number> = { px: 1, in: 96, mm: MM, cm: 96 / 2.54, m: 96 / 0.0254, pt: 96 / 72, pc: 16, q: 96 / 101.6 };
 const TOKEN = /\s*(?:(\d+[.,]?\d*|[.,]\d+)\s*(%|°|[a-z]+)?|([-+*/()]))\s*/iy;
 
 /** Significant figures of a sum that are not affected by rounding. */
@@ -88,7 +90,7 @@ function factor(from: string, to: string): number {
 /** Limits beyond this are numerical, and not shown. */
 const BOUNDLESS = 1e6;
 
-/** Describes the permitted values. */
+/** Returns a description of the permitted values, as the message for a wrong one. */
 export function asked(unit: string, from = -Infinity, to = Infinity, isWhole = false): string {
   const [least, most] = [Number(from.toPrecision(6)), to < BOUNDLESS ? to : Infinity];
   const [what, end] = [isWhole ? "A whole number" : "A number", unit && ` ${unit}`];
@@ -155,10 +157,10 @@ export class Field {
     this.wrongFor = problem === null ? null : this.read();
     this.message.textContent = problem;
     this.message.hidden = problem === null;
-    if (problem === null) this.input.removeAttribute("aria-invalid");
-    else this.input.setAttribute("aria-invalid", "true");
-    if (problem === null) this.input.removeAttribute("aria-describedby");
-    else this.input.setAttribute("aria-describedby", this.message.id);
+    for (const [name, value] of [["aria-invalid", "true"], ["aria-describedby", this.message.id]] as const) {
+      if (problem === null) this.input.removeAttribute(name);
+      else this.input.setAttribute(name, value);
+    }
   }
 
   /** Shows the valid value again. */

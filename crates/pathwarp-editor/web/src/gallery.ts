@@ -1,14 +1,14 @@
 // The choice of shapes: every deformation and preset, each with a small picture of the present artwork.
 
 import type { App } from "./app";
-import { byId, h, icon } from "./dom";
+import { button, byId, h, icon } from "./dom";
 import { called, capital, stepName, words } from "./names";
 import { toast } from "./toast";
 import { DRAGGED } from "./values";
 import type { Deformation, Step } from "./types";
 
-/** Terms for tasks that a shape performs here, and other parts of the program otherwise. */
-const ALSO: Record<string, string> = {
+/** Further search terms of shapes and presets: tasks for which users may look elsewhere. */
+const SEARCH_TERMS: Record<string, string> = {
   shaper: "bottle label neck",
   envelope: "lines in a shape text in a shape badge",
   bend: "text on path words on a line badge seal",
@@ -18,7 +18,7 @@ const ALSO: Record<string, string> = {
 };
 
 /** Common tasks, in the order of docs/which.md, with the presets and deformations for them. */
-const WANTED: [string, string][] = [
+const TASKS: [string, string][] = [
   ["Arch", "warp/arc warp/arch warp/arc-upper warp/arc-lower wordart/arch-up wordart/arch-down wordart/arch-up-pour wordart/arch-down-pour wordart/can-up wordart/can-down wordart/curve-up wordart/curve-down"],
   ["Wave", "warp/flag warp/wave wave wordart/wave1 wordart/wave2 wordart/double-wave1 wordart/wave4 warp/rise"],
   ["Bulge", "warp/bulge warp/inflate warp/fisheye warp/squeeze bulge lens wordart/inflate wordart/deflate wordart/inflate-top wordart/inflate-bottom wordart/deflate-top wordart/deflate-bottom wordart/deflate-inflate wordart/deflate-inflate-deflate"],
@@ -36,8 +36,7 @@ interface Card {
   deformation: string;
   args: Record<string, string[]>;
   variant: { label: string; param: string } | null;
-  /** The text that is searched. */
-  words: string;
+  searchText: string;
 }
 
 export class Gallery {
@@ -46,27 +45,27 @@ export class Gallery {
   private cards: Card[] = [];
   private queue: Card[] = [];
   private isDrawing = false;
-  private own = h("section", { hidden: true });
+  private userPresets = h("section", { hidden: true });
   /** The message that nothing was found. */
   private none = h("p", { class: "none", role: "status", hidden: true });
   /** The names of the user's presets. */
   names: string[] = [];
-  private shown = "";
-  private seen = new IntersectionObserver((entries) => {
+  /** The drawing in the pictures. */
+  private drawing = "";
+  /** Queues cards that scroll into view. */
+  private observer = new IntersectionObserver((entries) => {
     for (const entry of entries) {
       const card = this.cards.find((c) => c.button === entry.target);
       if (!entry.isIntersecting || !card) continue;
-      this.seen.unobserve(entry.target);
+      this.observer.unobserve(entry.target);
       this.queue.push(card);
-      void this.draw();
+      void this.drawQueued();
     }
   }, { rootMargin: "150px" });
 
   constructor(private app: App) {
-    app.listen((change) => {
-      if (change === "state") this.build();
-      if (change === "steps") this.mark();
-    });
+    app.listen(["state"], () => this.build());
+    app.listen(["steps"], () => this.mark());
     this.search.addEventListener("input", () => this.filter());
     this.search.addEventListener("keydown", (e) => {
       if (e.key === "Enter" && this.search.value.trim() !== "") this.box.querySelector<HTMLElement>("section:not([hidden]) :is(.card, .preset):not([hidden])")?.click();
@@ -74,61 +73,54 @@ export class Gallery {
   }
 
   private build(): void {
-    if (this.shown === "") void this.loadPresets();
+    if (this.drawing === "") void this.app.request({ do: "presets" }).then((answer) => answer?.presets && this.showPresets(answer.presets));
     const { drawing = "" } = this.app.state ?? {};
-    if (drawing === this.shown || this.app.catalogue.length === 0) return;
-    this.shown = drawing;
+    if (drawing === this.drawing || this.app.catalogue.length === 0) return;
+    this.drawing = drawing;
     for (const { image } of this.cards) URL.revokeObjectURL(image.src);
     this.cards = [];
     this.queue = [];
     const all = this.app.catalogue.filter((d) => !d.first);
-    const first = this.app.catalogue.filter((d) => d.first);
-    const byHand = all.filter((d) => isDragged(d) && !d.gallery).flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))]);
-    const presets = all.filter((d) => d.gallery).flatMap((d) => this.presets(d));
-    const effects = all.filter((d) => !isDragged(d) && !d.gallery).map((d) => this.whole(d));
+    const edits = this.app.catalogue.filter((d) => d.first);
+    const byHand = all.filter((d) => isDragged(d) && !d.gallery).flatMap((d) => [this.shapeCard(d), ...d.variants.map((v) => this.shapeCard(d, v))]);
+    const presets = all.filter((d) => d.gallery).flatMap((d) => this.presetCards(d));
+    const effects = all.filter((d) => !isDragged(d) && !d.gallery).map((d) => this.shapeCard(d));
     const rest = new Set([...byHand, ...presets, ...effects]);
-    const wanted = WANTED.map(([title, names]) => {
+    const tasks = TASKS.map(([title, names]) => {
       const cards = names.split(" ").flatMap((name) => [...rest].filter((c) => [c.deformation, ...Object.values(c.args).flat()].join("/") === name));
       cards.forEach((c) => rest.delete(c));
       return this.section(title, cards);
     });
-    const left = (title: string, cards: Card[]) => this.section(title, cards.filter((c) => rest.has(c)));
+    const others = (title: string, cards: Card[]) => this.section(title, cards.filter((c) => rest.has(c)));
     this.box.replaceChildren(
-      this.none, this.own, ...wanted,
-      left("By hand", byHand), left("More styles", presets), left("Effects", effects),
-      this.section("Before bending", first.map((d) => this.whole(d))),
+      this.none, this.userPresets, ...tasks,
+      others("By hand", byHand), others("More styles", presets), others("Effects", effects),
+      this.section("Before bending", edits.map((d) => this.shapeCard(d))),
     );
     this.mark();
     this.filter();
-  }
-
-  private async loadPresets(): Promise<void> {
-    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "presets" }));
-    if (answer?.presets) this.showPresets(answer.presets);
   }
 
   /** Shows the user's presets. */
   showPresets(names: string[]): void {
     this.names = names;
     const entry = (name: string) => {
-      const use = h("button", { type: "button", class: "preset" }, name);
-      use.addEventListener("click", async () => {
-        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "preset", name }));
+      const use = button({ class: "preset" }, async () => {
+        const answer = await this.app.request({ do: "preset", name });
         if (answer?.steps) await this.app.arrange(answer.steps.map((step) => ({ ...step, exclude: this.app.locks })), answer.steps.length - 1);
         document.body.classList.remove("shapes-open");
-      });
-      const forget = h("button", { type: "button", class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, icon("close"));
-      forget.addEventListener("click", async () => {
-        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
+      }, name);
+      const forget = button({ class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, async () => {
+        const answer = await this.app.request({ do: "forget-preset", name });
         if (!answer?.presets) return;
         this.showPresets(answer.presets);
         // Keep the focus nearby.
-        const left = this.own.querySelectorAll<HTMLElement>(".small");
-        (left[Math.min(names.indexOf(name), left.length - 1)] ?? this.search).focus();
-      });
+        const others = this.userPresets.querySelectorAll<HTMLElement>(".small");
+        (others[Math.min(names.indexOf(name), others.length - 1)] ?? this.search).focus();
+      }, icon("close"));
       return h("li", {}, use, forget);
     };
-    this.own.replaceChildren(h("h2", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
+    this.userPresets.replaceChildren(h("h2", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
     this.filter();
   }
 
@@ -141,12 +133,11 @@ export class Gallery {
 
   private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, text: Node, variant: Card["variant"] = null): Card {
     const image = h("img", { alt: "", draggable: "false" });
-    const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
-    const known = [...(this.app.deformation(deformation)?.knownAs ?? []), variant && deformation !== "envelope" ? "" : ALSO[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
-    const card: Card = { button, image, steps, deformation, args, variant, words: [button.textContent, ...known].join(" ") };
-    button.addEventListener("click", () => void this.choose(card));
+    const cardButton = button({ class: "card" }, () => void this.choose(card), h("span", { class: "thumb" }, image), text);
+    const terms = [...(this.app.deformation(deformation)?.knownAs ?? []), variant && deformation !== "envelope" ? "" : SEARCH_TERMS[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
+    const card: Card = { button: cardButton, image, steps, deformation, args, variant, searchText: [cardButton.textContent, ...terms].join(" ") };
     this.cards.push(card);
-    this.seen.observe(button);
+    this.observer.observe(cardButton);
     return card;
   }
 
@@ -162,11 +153,12 @@ export class Gallery {
     if (isReplaced) toast(`${name(app.step)} replaces ${old}. Undo brings it back, “Add step” keeps both`);
   }
 
-  private whole(d: Deformation, variant: Card["variant"] = null): Card {
+  /** Returns the card of a deformation, or of one of its variants. */
+  private shapeCard(d: Deformation, variant: Card["variant"] = null): Card {
     const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? (this.isTaken(called(d)) ? `${called(d)} (effect)` : called(d))), variant);
     card.button.title = capital(d.title);
     // The search covers the description, too.
-    card.words += ` ${called(d)} ${d.name} ${d.title}`;
+    card.searchText += ` ${called(d)} ${d.name} ${d.title}`;
     return card;
   }
 
@@ -175,7 +167,7 @@ export class Gallery {
     return this.cards.some(({ button }) => button.textContent === name);
   }
 
-  private presets(d: Deformation): Card[] {
+  private presetCards(d: Deformation): Card[] {
     const { presets } = d.gallery!;
     const names = d.params.find((p) => p.name === presets)?.words ?? [];
     return names.map((name) => {
@@ -185,7 +177,7 @@ export class Gallery {
   }
 
   /** Draws the visible cards one by one, so that neither dragging nor the picture of the drawing is delayed. */
-  private async draw(): Promise<void> {
+  private async drawQueued(): Promise<void> {
     if (this.isDrawing) return;
     this.isDrawing = true;
     for (let card = this.queue.shift(); card; card = this.queue.shift()) {
@@ -206,32 +198,31 @@ export class Gallery {
   private mark(): void {
     const { step } = this.app;
     for (const { button, deformation, args, variant } of this.cards) {
-      const others = this.app.deformation(deformation)?.variants ?? [];
-      // A shape is only a start: when edited, it counts as the variant of arbitrary paths.
-      const isVariant = variant ? step?.args[variant.param] !== undefined && others.find((o) => o.param === variant.param) === variant : !others.some((o) => step?.args[o.param]);
+      const variants = this.app.deformation(deformation)?.variants ?? [];
+      // Of the variants that set the same parameter, only the first one is marked: the others are mere starts.
+      const isVariant = variant ? step?.args[variant.param] !== undefined && variants.find((v) => v.param === variant.param) === variant : !variants.some((v) => step?.args[v.param]);
       const isChosen = step?.deformation === deformation && isVariant && Object.entries(args).every(([k, v]) => step.args[k]?.[0] === v[0]);
       button.setAttribute("aria-pressed", String(isChosen));
     }
   }
 
   private filter(): void {
-    const wanted = this.search.value.trim().toLowerCase();
     // Names may be typed without their menus, and with other characters between the words.
     const plain = (text: string) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, " ").trim();
-    const all = plain(wanted).split(" ");
-    const fits = (words: string) => all.every((word) => plain(words).includes(word));
-    for (const { button, words } of this.cards) button.hidden = !fits(words);
-    const presets = Array.from(this.own.querySelectorAll("li"));
+    const typedWords = plain(this.search.value).split(" ");
+    const fits = (text: string) => typedWords.every((word) => plain(text).includes(word));
+    for (const { button, searchText } of this.cards) button.hidden = !fits(searchText);
+    const presets = Array.from(this.userPresets.querySelectorAll("li"));
     for (const preset of presets) preset.hidden = !fits(preset.textContent ?? "");
-    this.own.hidden = presets.every((preset) => preset.hidden);
+    this.userPresets.hidden = presets.every((preset) => preset.hidden);
     this.none.textContent = `No shape is called “${this.search.value.trim()}”`;
-    this.none.hidden = !this.own.hidden || this.cards.some(({ button }) => !button.hidden);
+    this.none.hidden = !this.userPresets.hidden || this.cards.some(({ button }) => !button.hidden);
     for (const section of Array.from(this.box.children) as HTMLElement[]) {
-      if (section === this.own || section === this.none) continue;
+      if (section === this.userPresets || section === this.none) continue;
       // Tab reaches one visible card of the section.
       const shown = Array.from(section.querySelectorAll<HTMLElement>(".card")).filter((card) => !card.hidden);
       if (shown.length > 0 && !shown.some((card) => card.tabIndex === 0)) shown[0]!.tabIndex = 0;
-      section.hidden = !Array.from(section.querySelectorAll<HTMLElement>(".card")).some((c) => !c.hidden);
+      section.hidden = shown.length === 0;
     }
   }
 }

@@ -6,7 +6,7 @@ import { byId } from "./dom";
 const GROUNDS = ["white", "black", "checks"] as const;
 type Name = (typeof GROUNDS)[number];
 /** The key under which the browser stores the choice. */
-const CHOSEN = "pathwarp-ground";
+const CHOICE_KEY = "pathwarp-ground";
 /** Colours whose components all reach this value are invisible on white. */
 const PALE = 235;
 
@@ -17,17 +17,15 @@ export class Ground {
 
   constructor(app: App) {
     this.show(this.chosen);
-    app.listen((change) => {
-      if (change === "report") this.suit(app.state?.drawing ?? "");
-    });
+    app.listen(["report"], () => this.adapt(app.state?.drawing ?? ""));
     byId("ground").addEventListener("click", () => {
       this.show(GROUNDS[(GROUNDS.indexOf(this.shown) + 1) % GROUNDS.length]!);
-      localStorage.setItem(CHOSEN, this.shown);
+      localStorage.setItem(CHOICE_KEY, this.shown);
     });
   }
 
   private get chosen(): Name {
-    return GROUNDS.find((name) => name === localStorage.getItem(CHOSEN)) ?? "white";
+    return GROUNDS.find((name) => name === localStorage.getItem(CHOICE_KEY)) ?? "white";
   }
 
   private show(name: Name): void {
@@ -37,7 +35,7 @@ export class Ground {
   }
 
   /** Shows an all-white drawing on black if the user has chosen white. */
-  private suit(drawing: string): void {
+  private adapt(drawing: string): void {
     const art = Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) :is(path, image)"));
     if (drawing === this.drawing || art.length === 0) return;
     this.drawing = drawing;

@@ -1,14 +1,14 @@
 // The handles of a step, computed from the geometry of its parameters.
 
-import type { Deformation, Grip, Handle, Line, Net, Param, Shape, Step, StepGrips, Subpath, XY } from "./types";
+import type { Arc, Deformation, Frame, Grip, Handle, Line, Net, Param, Shape, Step, StepGrips, Subpath, XY } from "./types";
 import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
 import { dials, type Dial } from "./dials";
 import { called, words } from "./names";
 import { inSpace } from "./space";
 import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
 
-/** A point on a path of a parameter. */
-interface Near {
+/** A point on a path of a parameter; `id` is the indices of the path and of its subpath, as in keys of handles. */
+interface PathHit {
   name: string;
   id: string;
   sub: Subpath;
@@ -29,38 +29,34 @@ export interface Pull {
 const FARTHEST_BEND = 1.9;
 
 /** Least parameter from the ends of a curve: nearer to them, control points would have to move far to follow a pointer. */
-const MARGIN = 0.15;
-
+const END_MARGIN = 0.15;
 /** The notation of a point and its image. */
 const PAIR = "X,Y:X,Y";
 /** Fewest points of a closed path into which artwork is bent. */
 const FEWEST_CLOSED = 3;
-
 /** Number of segments that draw a circle. */
-const ROUND = 90;
-
+const CIRCLE_SEGMENTS = 90;
 /** Parameters whose lines the artwork follows; their ends keep the directions of their handles. */
 const SKELETONS = new Set(["along"]);
 
 /** The handles of a step, which change as they are moved. */
 export class Handles {
+  readonly frame: Frame;
   handles: Handle[] = [];
-  private grips: Record<string, Grip>;
+  readonly grips: Record<string, Grip>;
   /** Handles of numbers. */
   private dials: Dial[] = [];
   /** A path of the drawing that a parameter referred to before its line was dragged. */
   released: string | null = null;
-  /** Control points of nets that have been moved. */
+  /** Indices of the control points of nets that have been moved, by parameter. */
   private moved: Record<string, Set<number>> = {};
 
-  constructor(private deformation: Deformation, private step: Step, grips: StepGrips) {
+  constructor(readonly deformation: Deformation, private step: Step, grips: StepGrips) {
     this.frame = grips.frame;
     this.grips = structuredClone(grips.params);
     for (const [name, { adjust }] of Object.entries(this.grips)) if (adjust) readAdjust(adjust, step.args[name] ?? []);
     this.collect();
   }
-
-  readonly frame: [number, number, number, number];
 
   private collect(): void {
     this.handles = [];
@@ -69,17 +65,17 @@ export class Handles {
       if (!grip) continue;
       // An eye with a separate height is at the middle.
       if (grip.point && !(name === "eye" && this.step.args["eye-height"])) this.addPoint(name, grip);
-      grip.points?.forEach((_, i) => this.addOneOf(name, grip.points!, i));
+      grip.points?.forEach((_, i) => this.addListPoint(name, grip.points!, i));
       grip.pairs?.forEach((_, i) => this.addPair(name, grip.pairs!, i));
       grip.net?.points.forEach((_, i) => this.addNode(name, grip.net!, i));
       if (name === this.deformation.gallery?.bend && grip.value !== undefined) this.addBend(name, grip);
       if (name === "radius" && grip.value !== undefined && this.grips.center?.point) this.addRadius(name, grip);
       if (grip.circle) this.addCircle(name, grip);
-      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
+      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? closed(sub) : sub, `${i}.${j}`)));
     }
     // The fixed point of a rotation or scaling has no effect alone, so dials are added.
-    const place = { deformation: this.deformation, grips: this.grips, frame: this.frame };
-    this.dials = this.handles.every(({ param }) => param === "about") ? dials(place) : this.grips.eye || this.grips["eye-height"] ? inSpace(place) : [];
+    const isAnamorphosis = this.grips.eye || this.grips["eye-height"];
+    this.dials = this.handles.every(({ param }) => param === "about") ? dials(this) : isAnamorphosis ? inSpace(this) : [];
     this.handles.push(...this.dials.map(({ handle }) => handle));
   }
 
@@ -89,35 +85,36 @@ export class Handles {
   }
 
   /** `true` if points are added as pins, at the artwork's points under the pointer. */
-  get pairs(): boolean {
+  get addsPins(): boolean {
     return this.grows && this.deformation.params.some(({ name, notation }) => notation === PAIR && this.grips[name]?.pairs);
   }
 
   /** Returns the handle of the point that is nearest to `at`. */
   nearest(at: XY): Handle | null {
-    const far = (h: Handle) => Math.hypot(h.get()[0] - at[0], h.get()[1] - at[1]);
-    return this.handles.filter(({ shape }) => shape === "node").reduce<Handle | null>((best, h) => (best && far(best) <= far(h) ? best : h), null);
+    const distance = (h: Handle) => Math.hypot(h.get()[0] - at[0], h.get()[1] - at[1]);
+    return this.handles.filter(({ shape }) => shape === "node").reduce<Handle | null>((best, h) => (best && distance(best) <= distance(h) ? best : h), null);
   }
 
   /** Returns `true` if points are added to all rows, or removed from all, at once. */
   isRows(param: string): boolean {
-    return this.points(param) === "rows";
+    return this.pointsOf(param) === "rows";
   }
 
   /** Returns `true` if a point added at `at` adds no others. */
   isFree(at: XY, reach: number): boolean {
-    const found = this.near(at, reach, (param) => param.points !== undefined);
-    return !found || this.points(found.name) === "any";
+    const hit = this.pathNear(at, reach, (param) => param.points !== undefined);
+    return !hit || this.pointsOf(hit.name) === "any";
   }
 
   /** Returns values for which the net has another row or column through a point on one of its lines. */
   denser(at: XY, reach: number): Record<string, string[]> | null {
     const { net } = this;
     const sides = net?.lines.flatMap((line) => line.slice(1).map((b, i) => [line[i]!, b] as const)) ?? [];
-    const far = ([a, b]: readonly [number, number]) => distance(at, net!.points[a]!, net!.points[b]!);
-    const side = sides.filter((s) => far(s) <= reach).sort((s, t) => far(s) - far(t))[0];
+    const distanceTo = ([a, b]: readonly [number, number]) => distance(at, net!.points[a]!, net!.points[b]!);
+    const side = sides.filter((s) => distanceTo(s) <= reach).sort((s, t) => distanceTo(s) - distanceTo(t))[0];
     if (!net || !side) return null;
     const [a, b] = side.map((i) => net.names[i]!.split(",").map(Number)) as [number[], number[]];
+    // In a triangle, the three indices of a point add up to the degree.
     if (a.length === 3) return { degree: [String(a.reduce((sum, n) => sum + n) + 1)] };
     const axis = a[0] === b[0] ? 1 : 0;
     const numbers = (name: string, usual: string) => {
@@ -132,13 +129,9 @@ export class Handles {
     return { [name]: [counts.join("x")] };
   }
 
-  private points(name: string): "any" | "rows" | undefined {
+  /** Returns the rule for the number of a path's points. */
+  private pointsOf(name: string): Param["points"] {
     return this.deformation.params.find((p) => p.name === name)?.points;
-  }
-
-  /** Returns `true` if the path may have any number of points. */
-  private isAny(name: string): boolean {
-    return this.points(name) === "any";
   }
 
   /** The rows of points, all of equal length. */
@@ -175,18 +168,19 @@ export class Handles {
     });
   }
 
-  /** Adds the handles for a circle or arc: the centre moves it, a handle opposite to its start changes the radius, its ends rotate. */
+  /** Adds the handles for a circle or arc: the centre moves it, a handle halfway between its ends changes the radius, its ends rotate. */
   private addCircle(param: string, grip: Grip): void {
+    // The centre's x and y, the radius, and the angles of start and end.
     const c = grip.circle!;
     const name = words(param);
-    const at = (degrees: number): XY => [c[0] + c[2] * Math.cos((degrees * Math.PI) / 180), c[1] + c[2] * Math.sin((degrees * Math.PI) / 180)];
+    const at = (degrees: number) => onCircle(c, degrees);
     const handle = (key: string, shape: Shape, label: string, get: () => XY, set: (to: XY) => void) =>
       this.handles.push({ key: `${param}/${key}`, param, shape, label: `${name}, ${label}`, group: param, get, set });
     handle("centre", "node", "centre", () => [c[0], c[1]], (to) => void ([c[0], c[1]] = to));
     handle("radius", "control", "radius", () => at((c[3] + c[4]) / 2), (to) => void (c[2] = Math.max(Math.hypot(to[0] - c[0], to[1] - c[1]), 1e-6)));
     const isWhole = Math.abs(Math.abs(c[4] - c[3]) - 360) < 1e-6;
     /** Returns the shortest rotation, in degrees, from an angle to the direction of a point. */
-    const turn = (from: number, to: XY) => ((((Math.atan2(to[1] - c[1], to[0] - c[0]) * 180) / Math.PI - from) % 360) + 540) % 360 - 180;
+    const turn = (from: number, to: XY) => (((((Math.atan2(to[1] - c[1], to[0] - c[0]) * 180) / Math.PI - from) % 360) + 540) % 360) - 180;
     handle("start", "node", "start", () => at(c[3]), (to) => {
       const by = turn(c[3], to);
       c[3] += by;
@@ -195,7 +189,7 @@ export class Handles {
     if (!isWhole) handle("end", "node", "end", () => at(c[4]), (to) => void (c[4] += turn(c[4], to)));
   }
 
-  private addOneOf(param: string, points: XY[], i: number): void {
+  private addListPoint(param: string, points: XY[], i: number): void {
     this.handles.push({
       key: `${param}/${i}`, param, shape: "node", label: `${words(param)} ${i + 1}`, group: param,
       get: () => points[i]!, set: (to) => void (points[i] = to),
@@ -229,9 +223,9 @@ export class Handles {
   private addSubpath(param: string, path: Subpath[], sub: Subpath, id: string): void {
     const { segments } = sub;
     const last = segments.length - 1;
-    const joined = last >= 0 && (sub.closed || path.length === 1) && same(end(segments[last]!), sub.start);
-    const nodes = joined ? segments.length : segments.length + 1;
-    const before = (n: number) => (n > 0 ? segments[n - 1] : joined ? segments[last] : undefined);
+    const isLoop = last >= 0 && (sub.closed || path.length === 1) && coincide(end(segments[last]!), sub.start);
+    const nodes = isLoop ? segments.length : segments.length + 1;
+    const before = (n: number) => (n > 0 ? segments[n - 1] : isLoop ? segments[last] : undefined);
     const after = (n: number) => segments[n];
     const at = (n: number): XY => (n === 0 ? sub.start : end(segments[n - 1]!));
     const isCorner = (n: number) => {
@@ -244,22 +238,23 @@ export class Handles {
       const label = path.length > 1 ? `${name}, line ${path.indexOf(sub) + 1}, point ${n + 1}` : `${name}, point ${n + 1}`;
       const key = `${param}/${id}/${n}`;
       this.handles.push({
-        key, param, shape: "node", label, group: `${param}/${id}`, remove: this.removal(param, sub, n, nodes),
+        key, param, shape: "node", label, group: `${param}/${id}`, remove: this.remover(param, sub, n, nodes),
         get: () => at(n),
         set: (to) => {
           const from = at(n);
-          const arrive = before(n);
-          const ends: [number[] | undefined, 0 | 2, number][] = [[arrive, 2, n > 0 ? n - 1 : nodes - 1], [after(n), 0, (n + 1) % nodes]];
-          const turns = isCorner(n);
-          // The control points at the other ends move along if those ends are corners, too.
-          const isFollowed = ends.map(([, , other]) => turns && isCorner(other));
-          ends.forEach(([seg, own, other], i) => {
+          const incoming = before(n);
+          // Each adjacent segment, the index of its control point at this node, and its other node.
+          const adjacent: [number[] | undefined, 0 | 2, number][] = [[incoming, 2, n > 0 ? n - 1 : nodes - 1], [after(n), 0, (n + 1) % nodes]];
+          const isCornerHere = isCorner(n);
+          // The control points at the other nodes move along if those are corners, too.
+          const isWhole = adjacent.map(([, , other]) => isCornerHere && isCorner(other));
+          adjacent.forEach(([seg, near, other], i) => {
             if (seg?.length !== 6) return;
-            const moved = similarity(turns ? at(other) : null, from, to);
-            for (const k of isFollowed[i] ? [own, 2 - own] : [own]) seg.splice(k, 2, ...moved([seg[k]!, seg[k + 1]!]));
+            const image = similarity(isCornerHere ? at(other) : null, from, to);
+            for (const k of isWhole[i] ? [near, 2 - near] : [near]) seg.splice(k, 2, ...image([seg[k]!, seg[k + 1]!]));
           });
           if (n === 0) sub.start = to;
-          if (n > 0 || joined) arrive!.splice(arrive!.length - 2, 2, ...to);
+          if (n > 0 || isLoop) incoming!.splice(incoming!.length - 2, 2, ...to);
         },
       });
       const arm = (side: "in" | "out") => {
@@ -273,10 +268,9 @@ export class Handles {
             const other = side === "in" ? after(n) : before(n);
             const m = side === "in" ? 0 : 2;
             // A corner stays a corner.
-            const turns = smooth && other?.length === 6 && isSmooth(at(n), [seg[k]!, seg[k + 1]!], [other[m]!, other[m + 1]!]);
-            seg[k] = to[0];
-            seg[k + 1] = to[1];
-            if (turns) align(other, m, at(n), to);
+            const staysSmooth = smooth && other?.length === 6 && isSmooth(at(n), [seg[k]!, seg[k + 1]!], [other[m]!, other[m + 1]!]);
+            seg.splice(k, 2, ...to);
+            if (staysSmooth) align(other, m, at(n), to);
           },
         });
       };
@@ -286,8 +280,8 @@ export class Handles {
   }
 
   /** Returns a function that removes a node of a path, if enough remain. */
-  private removal(param: string, sub: Subpath, n: number, nodes: number): (() => void) | undefined {
-    if (this.points(param) === "rows" && nodes > 2 && n > 0 && n < nodes - 1) {
+  private remover(param: string, sub: Subpath, n: number, nodes: number): (() => void) | undefined {
+    if (this.isRows(param) && nodes > 2 && n > 0 && n < nodes - 1) {
       return () => {
         for (const [name, row] of this.rows) {
           drop(row, n);
@@ -296,17 +290,17 @@ export class Handles {
         this.collect();
       };
     }
-    if (!this.isAny(param) || nodes <= (sub.closed ? FEWEST_CLOSED : 2)) return undefined;
+    if (this.pointsOf(param) !== "any" || nodes <= (sub.closed ? FEWEST_CLOSED : 2)) return undefined;
     return () => {
       drop(sub, n);
       this.collect();
     };
   }
 
-  /** Returns the nearest path of parameters for which `is` holds. */
-  private near(at: XY, reach: number, is: (param: Param) => boolean): Near | null {
-    let best: Near | null = null;
-    for (const param of this.deformation.params.filter(is)) {
+  /** Returns the nearest point within reach on a path of the parameters that `accepts` chooses. */
+  private pathNear(at: XY, reach: number, accepts: (param: Param) => boolean): PathHit | null {
+    let best: PathHit | null = null;
+    for (const param of this.deformation.params.filter(accepts)) {
       this.grips[param.name]?.paths?.forEach((path, i) => path.forEach((sub, j) => {
         const spot = nearest(sub, at);
         if (spot && spot.distance <= Math.min(reach, best?.spot.distance ?? reach)) best = { name: param.name, id: `${i}.${j}`, sub, spot };
@@ -317,19 +311,19 @@ export class Handles {
 
   /** Starts to drag the line near a point: a curve bends with the pointer, a straight line moves. */
   pull(at: XY, reach: number): Pull | null {
-    const found = this.near(at, reach, () => true);
-    if (!found) return this.pullRow(at, reach) ?? this.pullCircle(at, reach);
-    const { name, id, sub, spot } = found;
+    const hit = this.pathNear(at, reach, () => true);
+    if (!hit) return this.pullRow(at, reach) ?? this.pullCircle(at, reach);
+    const { name, id, sub, spot } = hit;
     const handle = (n: number, side = "") => this.handles.find((h) => h.key === `${name}/${id}/${n}${side}`);
     const next = handle(spot.piece + 1) ? spot.piece + 1 : 0;
     const isCurve = sub.segments[spot.piece]!.length === 6;
     const ends = isCurve ? [handle(spot.piece, "/out"), handle(next, "/in")] : [handle(spot.piece), handle(next)];
     const [first, second] = ends;
     if (!first || !second) return null;
-    // The point of the curve follows the pointer; the nearer control point moves more than the other.
-    const t = Math.min(Math.max(spot.t, MARGIN), 1 - MARGIN);
-    const whole = isCurve ? 3 * t * (1 - t) * ((1 - t) ** 2 + t ** 2) : 1;
-    const shares = isCurve ? [(1 - t) / whole, t / whole] : [1, 1];
+    // The point at t follows the pointer, and the control points move in the ratio (1 - t) : t.
+    const t = Math.min(Math.max(spot.t, END_MARGIN), 1 - END_MARGIN);
+    const weight = isCurve ? 3 * t * (1 - t) * ((1 - t) ** 2 + t ** 2) : 1;
+    const shares = isCurve ? [(1 - t) / weight, t / weight] : [1, 1];
     const from = [[...first.get()], [...second.get()]] as [XY, XY];
     return {
       param: name,
@@ -351,9 +345,9 @@ export class Handles {
     const [param, grip] = Object.entries(this.grips).find(([, g]) => g.net) ?? [];
     const net = grip?.net;
     if (!net || !param) return null;
-    const far = (line: number[]) => Math.min(...line.slice(1).map((b, i) => distance(at, net.points[line[i]!]!, net.points[b]!)));
-    const row = net.lines.filter((line) => line.length > 1).sort((a, b) => far(a) - far(b))[0];
-    if (!row || far(row) > reach) return null;
+    const distanceTo = (line: number[]) => Math.min(...line.slice(1).map((b, i) => distance(at, net.points[line[i]!]!, net.points[b]!)));
+    const row = net.lines.filter((line) => line.length > 1).sort((a, b) => distanceTo(a) - distanceTo(b))[0];
+    if (!row || distanceTo(row) > reach) return null;
     const handles = row.map((i) => this.handles.find(({ key }) => key === `${param}/${i}`)!);
     const from = handles.map((h): XY => [...h.get()]);
     return { param, handles, ends: handles.map(({ key }) => key), targets: (to) => from.map(([x, y]) => [x + to[0] - at[0], y + to[1] - at[1]]) };
@@ -361,10 +355,10 @@ export class Handles {
 
   /** Adds a point to the path near `at`. */
   private divide(at: XY, reach: number): boolean {
-    const found = this.near(at, reach, (param) => param.points !== undefined);
-    if (!found) return false;
-    const { name, sub, spot } = found;
-    if (this.points(name) === "any") {
+    const hit = this.pathNear(at, reach, (param) => param.points !== undefined);
+    if (!hit) return false;
+    const { name, sub, spot } = hit;
+    if (this.pointsOf(name) === "any") {
       split(sub, spot);
       this.collect();
       this.write(name);
@@ -396,12 +390,9 @@ export class Handles {
         for (const line of grip.net.lines) out.push({ kind: "net", points: line.map((i) => points[i]!) });
       }
       if (grip.circle) {
-        const [cx, cy, r, from, to] = grip.circle;
-        const at = (i: number): XY => {
-          const a = ((from + ((to - from) * i) / ROUND) * Math.PI) / 180;
-          return [cx + r * Math.cos(a), cy + r * Math.sin(a)];
-        };
-        out.push({ kind: "path", points: Array.from({ length: ROUND + 1 }, (_, i) => at(i)) }, { kind: "arm", points: [[cx, cy], at(0)] });
+        const [cx, cy, , from, to] = grip.circle;
+        const points = Array.from({ length: CIRCLE_SEGMENTS + 1 }, (_, i) => onCircle(grip.circle!, from + ((to - from) * i) / CIRCLE_SEGMENTS));
+        out.push({ kind: "path", points }, { kind: "arm", points: [[cx, cy], points[0]!] });
       }
       for (const path of grip.paths ?? []) path.forEach((sub) => this.subpathLines(sub, out));
     }
@@ -412,12 +403,11 @@ export class Handles {
     let at = sub.start;
     const pieces: XY[] = [at];
     for (const seg of sub.segments) {
-      const points: XY[] = [];
-      for (let i = 0; i + 1 < seg.length; i += 2) points.push([seg[i]!, seg[i + 1]!]);
-      const to = points[points.length - 1]!;
-      if (points.length === 3) {
-        out.push({ kind: "arm", points: [at, points[0]!] }, { kind: "arm", points: [points[1]!, to] });
-        pieces.push(...points);
+      const to = end(seg);
+      if (seg.length === 6) {
+        const [first, second]: [XY, XY] = [[seg[0]!, seg[1]!], [seg[2]!, seg[3]!]];
+        out.push({ kind: "arm", points: [at, first] }, { kind: "arm", points: [second, to] });
+        pieces.push(first, second, to);
       } else {
         pieces.push(at, to, to);
       }
@@ -448,9 +438,8 @@ export class Handles {
   /** Writes a value for each moved control point of a net; it replaces earlier values and shifts. */
   private writeNet(name: string, net: Net): void {
     for (const i of this.moved[name] ?? []) {
-      const index = `${net.names[i]}:`;
-      const without = (key: string) =>
-        (this.step.args[key] ?? []).flatMap((v) => v.split(/\s+/)).filter((v) => v && !v.startsWith(index));
+      const prefix = `${net.names[i]}:`;
+      const without = (key: string) => (this.step.args[key] ?? []).flatMap((v) => v.split(/\s+/)).filter((v) => v && !v.startsWith(prefix));
       if (this.step.args.move) this.step.args.move = without("move");
       this.step.args[name] = [...without(name), node(net.names[i]!, net.points[i]!, this.frame)];
     }
@@ -461,7 +450,7 @@ export class Handles {
     const [param, id = "", n] = handle.key.split("/");
     const [i, j] = id.split(".").map(Number);
     const sub = this.grips[param!]?.paths?.[i!]?.[j!];
-    if (!sub || this.points(handle.param) === undefined) return null;
+    if (!sub || this.pointsOf(handle.param) === undefined) return null;
     return middle(sub, Math.min(Number(n), sub.segments.length - 1));
   }
 
@@ -503,17 +492,22 @@ export class Handles {
   }
 
   /** Returns the handle at the mirror image about the frame's middle, if one is there. */
-  partner(of: Handle): Handle | null {
+  partner(handle: Handle): Handle | null {
     const [x, , w, h] = this.frame;
-    const [px, py] = of.get();
+    const [px, py] = handle.get();
     const mirrored: XY = [2 * x + w - px, py];
-    const near = 1e-3 * Math.hypot(w, h);
-    const candidates = this.handles.filter((o) => o !== of && o.shape === of.shape && o.param === of.param);
-    return candidates.find((o) => Math.hypot(o.get()[0] - mirrored[0], o.get()[1] - mirrored[1]) < near) ?? null;
+    const tolerance = 1e-3 * Math.hypot(w, h);
+    const others = this.handles.filter((o) => o !== handle && o.shape === handle.shape && o.param === handle.param);
+    return others.find((o) => Math.hypot(o.get()[0] - mirrored[0], o.get()[1] - mirrored[1]) < tolerance) ?? null;
   }
 }
 
-/** Returns a circle as cubics. */
+/** Returns the point of a circle in a direction, clockwise from the right. */
+function onCircle([cx, cy, r]: Arc, degrees: number): XY {
+  return [cx + r * Math.cos((degrees * Math.PI) / 180), cy + r * Math.sin((degrees * Math.PI) / 180)];
+}
+
+/** Returns a circle as four cubics, whose handles have the length 4/3 · tan(π/8) · r. */
 function circle([x, y]: XY, r: number): Line {
   const k = 0.5522848 * r;
   const points: XY[] = [
@@ -532,31 +526,31 @@ function distance(p: XY, a: XY, b: XY): number {
 
 /** Returns the similarity that fixes `about` and maps one point to another; without `about`, the translation. */
 function similarity(about: XY | null, from: XY, to: XY): (p: XY) => XY {
-  if (!about || same(about, from)) return ([x, y]) => [x + to[0] - from[0], y + to[1] - from[1]];
+  if (!about || coincide(about, from)) return ([x, y]) => [x + to[0] - from[0], y + to[1] - from[1]];
   const [ax, ay, bx, by] = [from[0] - about[0], from[1] - about[1], to[0] - about[0], to[1] - about[1]];
   const square = ax * ax + ay * ay;
+  // The quotient (b - about) / (a - about) of complex numbers.
   const [re, im] = [(ax * bx + ay * by) / square, (ax * by - ay * bx) / square];
   return ([x, y]) => [about[0] + re * (x - about[0]) - im * (y - about[1]), about[1] + im * (x - about[0]) + re * (y - about[1])];
 }
 
-function same(a: XY, b: XY): boolean {
+function coincide(a: XY, b: XY): boolean {
   return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9 * (1 + Math.hypot(...a));
 }
 
 /** The cosine of the angle from which two handles count as opposite: within about two degrees. */
-const OPPOSITE = -0.9995;
+const OPPOSITE_COSINE = -0.9995;
 
+/** Returns `true` if the control points `a` and `b` are on opposite sides of a node. */
 function isSmooth(node: XY, a: XY, b: XY): boolean {
   const [ax, ay, bx, by] = [a[0] - node[0], a[1] - node[1], b[0] - node[0], b[1] - node[1]];
-  return ax * bx + ay * by < OPPOSITE * Math.hypot(ax, ay) * Math.hypot(bx, by);
+  return ax * bx + ay * by < OPPOSITE_COSINE * Math.hypot(ax, ay) * Math.hypot(bx, by);
 }
 
 /** Rotates the control point at `k` of a segment about a node, at constant distance, to lie opposite to `to`. */
 function align(segment: number[], k: number, node: XY, to: XY): void {
   const [dx, dy] = [node[0] - to[0], node[1] - to[1]];
   const length = Math.hypot(dx, dy);
-  const own = Math.hypot(segment[k]! - node[0], segment[k + 1]! - node[1]);
-  if (length === 0 || own === 0) return;
-  segment[k] = node[0] + (own * dx) / length;
-  segment[k + 1] = node[1] + (own * dy) / length;
+  const radius = Math.hypot(segment[k]! - node[0], segment[k + 1]! - node[1]);
+  if (length > 0 && radius > 0) segment.splice(k, 2, node[0] + (radius * dx) / length, node[1] + (radius * dy) / length);
 }

@@ -4,7 +4,6 @@ import type { Subpath, XY } from "./types";
 
 /** Samples of a piece for the search of its nearest point. */
 const SAMPLES = 32;
-
 /** The precision of the parameter found. */
 const FINE = 1e-9;
 
@@ -29,6 +28,7 @@ export function end(seg: number[]): XY {
   return [seg[seg.length - 2]!, seg[seg.length - 1]!];
 }
 
+/** Returns the point that divides the segment from the first point to the second at t. */
 function mix([ax, ay]: XY, [bx, by]: XY, t: number): XY {
   return [ax + (bx - ax) * t, ay + (by - ay) * t];
 }
@@ -51,22 +51,22 @@ export function closed(sub: Subpath): Subpath {
 /** Returns the point of a path that is nearest to `to`. */
 export function nearest(sub: Subpath, to: XY): Spot | null {
   let best: Spot | null = null;
-  const look = (k: number, points: XY[], t: number) => {
+  const tryParameter = (k: number, points: XY[], t: number) => {
     const [at] = scheme(points, t).pop()! as [XY];
     const distance = Math.hypot(at[0] - to[0], at[1] - to[1]);
     if (!best || distance < best.distance) best = { piece: k, t, at, distance };
   };
   sub.segments.forEach((_, k) => {
     const points = piece(sub, k);
-    for (let i = 1; i < SAMPLES; i++) look(k, points, i / SAMPLES);
+    for (let i = 1; i < SAMPLES; i++) tryParameter(k, points, i / SAMPLES);
   });
   const found = best as Spot | null;
   if (!found) return null;
-  // Search between the neighbouring samples, halving the step.
+  // Between the neighbouring samples, the step is halved.
   const points = piece(sub, found.piece);
   for (let step = 0.5 / SAMPLES; step > FINE; step /= 2) {
     const { t } = best as unknown as Spot;
-    for (const near of [t - step, t + step]) look(found.piece, points, Math.min(Math.max(near, FINE), 1 - FINE));
+    for (const near of [t - step, t + step]) tryParameter(found.piece, points, Math.min(Math.max(near, FINE), 1 - FINE));
   }
   return best;
 }
@@ -76,13 +76,12 @@ export function middle(sub: Subpath, k: number): XY {
   return scheme(piece(sub, k), 0.5).pop()![0]!;
 }
 
-/** Splits a piece in two. Returns the index of the new node. */
-export function split(sub: Subpath, { piece: k, t }: Spot): number {
+/** Splits a piece in two. */
+export function split(sub: Subpath, { piece: k, t }: Spot): void {
   const rows = scheme(piece(sub, k), t);
   const first = rows.slice(1).map((row) => row[0]!);
   const second = rows.slice(0, -1).map((row) => row[row.length - 1]!).reverse();
   sub.segments.splice(k, 1, first.flat(), second.flat());
-  return k + 1;
 }
 
 /** Removes a node; the adjacent pieces are joined, and keep their outer control points. */

@@ -143,11 +143,11 @@ new MutationObserver(() => {
 
 // The key and the button show the original while they are held.
 const before = byId("before");
-const hide = () => void stage.before(false);
-before.addEventListener("pointerdown", () => void stage.before(true));
+const hide = () => void stage.showBefore(false);
+before.addEventListener("pointerdown", () => void stage.showBefore(true));
 for (const end of ["pointerup", "pointerleave", "pointercancel", "blur", "keyup"]) before.addEventListener(end, hide);
 before.addEventListener("keydown", (e) => {
-  if (e.key === " " || e.key === "Enter") void stage.before(true);
+  if (e.key === " " || e.key === "Enter") void stage.showBefore(true);
 });
 
 /** Cancels the drag in progress, and any request for a click. */
@@ -163,12 +163,12 @@ const KEYS: Record<string, () => void> = {
   "=": () => stage.zoom(ZOOM),
   "-": () => stage.zoom(1 / ZOOM),
   "0": () => stage.fit(),
-  b: () => void stage.before(true),
+  b: () => void stage.showBefore(true),
   e: showEnd,
   "?": () => showKeys(),
 };
 const COMMANDS: Record<string, (shift: boolean) => void> = {
-  s: (shift) => void (shift ? saving.open() : saving.quick()),
+  s: (shift) => void (shift ? saving.open() : saving.save()),
   z: (shift) => void app.turn(shift ? "redo" : "undo"),
   y: () => void app.turn("redo"),
 };

@@ -12,15 +12,10 @@ export class Modes {
   picksParts = false;
   mirrors = false;
   smooths = true;
-  /** Points of other handles to snap to, collected at the start of a drag. */
-  private snapTargets: XY[] = [];
+  /** The points with which a moving handle can be aligned. */
+  private snapPoints: XY[] = [];
   /** Shows the lines to which the handle has snapped, in user units. */
   onSnap: (x: number | null, y: number | null) => void = () => {};
-
-  /** Returns the reflection for symmetry. */
-  reflection(handles: Handles): (p: XY) => XY {
-    return reflection(handles);
-  }
 
   /** Returns the other points to add with a point: its reflection, if symmetry is on and that is more than `reach` (user units) away. */
   reflections(handles: Handles, at: XY, reach: number): XY[] {
@@ -28,17 +23,17 @@ export class Modes {
     return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
   }
 
-  /** Returns a function that drags a line (by its handles `own`), and its reflection if symmetry is on. */
-  puller(handles: Handles, { handles: own, targets }: Pull): (to: XY) => void {
-    const partners = own.map((handle) => (this.mirrors ? handles.partner(handle) : null));
+  /** Returns a function that drags a line, and its reflection if symmetry is on. */
+  puller(handles: Handles, { handles: pulled, targets }: Pull): (to: XY) => void {
+    const partners = pulled.map((handle) => (this.mirrors ? handles.partner(handle) : null));
     const mirrored = reflection(handles);
     return (to) => {
       const wanted = targets(to);
-      own.forEach((handle, i) => {
+      pulled.forEach((handle, i) => {
         const partner = partners[i] ?? null;
         const at = wanted[i]!;
         // If the line is its own reflection, each end moves by the mean of its motion and the reflected motion of the other end.
-        const partnerIndex = partner ? own.indexOf(partner) : -1;
+        const partnerIndex = partner ? pulled.indexOf(partner) : -1;
         const other = partnerIndex < 0 ? at : mirrored(wanted[partnerIndex]!);
         const target: XY = [(at[0] + other[0]) / 2, (at[1] + other[1]) / 2];
         handle.set(target, this.smooths);
@@ -51,8 +46,8 @@ export class Modes {
   mover(handles: Handles, handle: Handle): (to: XY, e: PointerEvent | null) => void {
     const partner = this.mirrors ? handles.partner(handle) : null;
     const mirrored = reflection(handles);
-    // These handles do not move during the drag.
-    this.snapTargets = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
+    // The other handles do not move, so the points to snap to are collected once, before the drag.
+    this.snapPoints = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
     const start: XY = [...handle.get()];
     return (to, e) => {
       // Shift restricts the direction, as in drawing programs.
@@ -70,8 +65,8 @@ export class Modes {
       return to;
     }
     const [x, y, w, h] = handles.frame;
-    const xs = [x, x + w / 2, x + w, ...this.snapTargets.map((p) => p[0])];
-    const ys = [y, y + h / 2, y + h, ...this.snapTargets.map((p) => p[1])];
+    const xs = [x, x + w / 2, x + w, ...this.snapPoints.map((p) => p[0])];
+    const ys = [y, y + h / 2, y + h, ...this.snapPoints.map((p) => p[1])];
     const [nx, ny] = [nearest(to[0], xs, reach), nearest(to[1], ys, reach)];
     this.onSnap(nx, ny);
     return [nx ?? to[0], ny ?? to[1]];
@@ -83,15 +78,15 @@ export class Modes {
 }
 
 /** Returns the reflection about the vertical line through the frame's centre. */
-function reflection({ frame: [left, , width] }: Handles): (p: XY) => XY {
+export function reflection({ frame: [left, , width] }: Handles): (p: XY) => XY {
   return ([x, y]) => [2 * left + width - x, y];
 }
 
 function nearest(value: number, among: number[], reach: number): number | null {
   let best: number | null = null;
   for (const candidate of among) {
-    const off = Math.abs(candidate - value);
-    if (off <= reach && (best === null || off < Math.abs(best - value))) best = candidate;
+    const distance = Math.abs(candidate - value);
+    if (distance <= reach && (best === null || distance < Math.abs(best - value))) best = candidate;
   }
   return best;
 }

@@ -5,7 +5,7 @@ const MOST = 4_000_000;
 
 type Point = [number, number];
 
-/** Returns path data that marks every node by a point, and connects it to its control points, in px of the drawing. */
+/** Returns path data in px of the drawing: `nodes` marks every node by a point, `arms` connects it to its control points. */
 export function nodesOf(paths: SVGPathElement[]): { nodes: string; arms: string } {
   const [nodes, arms]: [string[], string[]] = [[], []];
   let length = 0;
@@ -13,8 +13,8 @@ export function nodesOf(paths: SVGPathElement[]): { nodes: string; arms: string 
     const d = path.getAttribute("d") ?? "";
     length += d.length;
     if (length > MOST) break;
-    const at = place(path);
-    const text = (p: Point) => at(p).map((v) => v.toFixed(2)).join(",");
+    const toDrawing = drawingMap(path);
+    const text = (p: Point) => toDrawing(p).map((v) => v.toFixed(2)).join(",");
     for (const { from, to, control } of anchors(d)) {
       nodes.push(`M${text(to)}h0`);
       const [first, last] = [control[0], control[control.length - 1]];
@@ -25,11 +25,11 @@ export function nodesOf(paths: SVGPathElement[]): { nodes: string; arms: string 
 }
 
 /** Returns the map from a path's coordinates to px of the drawing: the transforms of the groups around it. */
-function place(path: SVGPathElement): (p: Point) => Point {
+function drawingMap(path: SVGPathElement): (p: Point) => Point {
   let matrix = new DOMMatrix();
   for (let e: Element | null = path; e && !e.classList.contains("art"); e = e.parentElement) {
-    const own = (e as SVGGraphicsElement).transform?.baseVal.consolidate()?.matrix;
-    if (own) matrix = new DOMMatrix([own.a, own.b, own.c, own.d, own.e, own.f]).multiply(matrix);
+    const m = (e as SVGGraphicsElement).transform?.baseVal.consolidate()?.matrix;
+    if (m) matrix = new DOMMatrix([m.a, m.b, m.c, m.d, m.e, m.f]).multiply(matrix);
   }
   return ([x, y]) => [matrix.a * x + matrix.c * y + matrix.e, matrix.b * x + matrix.d * y + matrix.f];
 }

@@ -1,7 +1,7 @@
 // Opens other drawings: chosen, dropped anywhere on the page, or pasted.
 
 import type { App } from "./app";
-import { byId, isTyping } from "./dom";
+import { byId, isTyping, onFile } from "./dom";
 import { toast } from "./toast";
 
 /** The name of a drawing that is pasted as text. */
@@ -9,13 +9,9 @@ const PASTED = "pasted.svg";
 
 export class Opening {
   constructor(private app: App) {
-    const chosen = byId<HTMLInputElement>("open-file");
-    byId("open").addEventListener("click", () => chosen.click());
-    chosen.addEventListener("change", () => {
-      const file = chosen.files?.[0];
-      chosen.value = "";
-      if (file) void this.open(file);
-    });
+    const fileInput = byId<HTMLInputElement>("open-file");
+    byId("open").addEventListener("click", () => fileInput.click());
+    onFile(fileInput, (file) => void this.open(file));
     window.addEventListener("dragover", (e) => {
       e.preventDefault();
       if (e.dataTransfer) e.dataTransfer.dropEffect = "copy";
@@ -58,7 +54,7 @@ export class Opening {
 /** Copies a file to the drawing's folder, where steps can read it. Returns the text that names it in a step. */
 export async function bring(app: App, file: File): Promise<string | null> {
   const bytes = await base64(file);
-  const answer = await app.attempt(() => app.connection.ask({ do: "bring", name: file.name, bytes }));
+  const answer = await app.request({ do: "bring", name: file.name, bytes });
   if (!answer?.written) return null;
   if (answer.copied) toast(`${file.name} was copied beside the drawing`);
   return answer.written;

@@ -2,7 +2,7 @@
 // drawing; locked parts stay unchanged.
 
 import type { App } from "./app";
-import { byId, h, icon } from "./dom";
+import { button, byId, h, icon } from "./dom";
 import type { Modes } from "./modes";
 import { capital, isCaption } from "./names";
 import type { Stage } from "./stage";
@@ -19,57 +19,51 @@ export class Parts {
   private rows: HTMLLIElement[] = [];
   /** The names of parts hidden on the page; the file contains them regardless. */
   private hidden = new Set<string>();
-  private shown = "";
+  /** The drawing and its captions, as JSON, whose parts are listed. */
+  private listed = "";
   private file = "";
 
   constructor(private app: App, private stage: Stage, private modes: Modes) {
-    app.listen((change) => {
-      if (change === "state") void this.load();
-      if (change === "steps") this.show();
-    });
+    app.listen(["state"], () => void this.load());
+    app.listen(["steps"], () => this.show());
     byId("parts-all").addEventListener("click", () => void app.scope([]));
     stage.onPart = (name, adds) => this.clicked(name, adds);
   }
 
   private async load(): Promise<void> {
     const { drawing = "", file = "", steps = [] } = this.app.state ?? {};
-    const shown = JSON.stringify([drawing, ...steps.filter(isCaption)]);
-    if (shown === this.shown) return;
-    this.shown = shown;
+    const listed = JSON.stringify([drawing, ...steps.filter(isCaption)]);
+    if (listed === this.listed) return;
+    this.listed = listed;
     // Other words have letters of the same names, which stay hidden.
     if (file !== this.file) this.hidden.clear();
     this.file = file;
-    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
-    this.all = answer?.parts ?? [];
+    this.all = (await this.app.request({ do: "parts" }))?.parts ?? [];
     this.stage.parts = new Set(this.all.map(({ name }) => name));
     this.rows = this.all.map((part) => this.row(part));
     this.list.replaceChildren(...this.rows);
-    this.shade();
+    this.hideOnCanvas();
     this.show();
   }
 
   private row(part: Part): HTMLLIElement {
     const title = part.label ?? part.name.replace(/^([a-z]+)(.*) at \d+:\d+$/i, (_, tag: string, letter: string) => capital((ELEMENTS[tag] ?? tag) + letter));
-    const choose = h("button", { type: "button", class: "part-name", title: part.name }, title);
-    choose.addEventListener("click", (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey));
-    choose.addEventListener("pointerenter", () => this.stage.lightParts([part, ...this.inside(part)].map(({ name }) => name)));
+    const choose = button({ class: "part-name", title: part.name }, (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey), title);
+    choose.addEventListener("pointerenter", () => this.stage.outlineParts([part, ...this.contentsOf(part)].map(({ name }) => name)));
     choose.addEventListener("pointerleave", () => this.show());
-    const button = (kind: "eye" | "lock", label: string, action: () => void) => {
-      const b = h("button", { type: "button", class: `small ${kind}`, "aria-label": `${label} ${title}`, title: `${label} ${title}` }, icon(kind));
-      b.addEventListener("click", action);
-      return b;
-    };
+    const iconButton = (kind: "eye" | "lock", label: string, click: () => void) =>
+      button({ class: `small ${kind}`, "aria-label": `${label} ${title}`, title: `${label} ${title}` }, click, icon(kind));
     const row = h(
       "li", {}, choose,
-      button("eye", "Hide here:", () => this.hide(part)),
-      button("lock", "Lock:", () => void this.lock(part)),
+      iconButton("eye", "Hide here:", () => this.hide(part)),
+      iconButton("lock", "Lock:", () => void this.lock(part)),
     );
     row.style.setProperty("--depth", String(Math.min(part.depth, 8)));
     return row;
   }
 
-  /** Returns the contents of a group. */
-  private inside(part: Part): Part[] {
+  /** Returns the contents of a group, which follow it in the list. */
+  private contentsOf(part: Part): Part[] {
     const after = this.all.slice(this.all.indexOf(part) + 1);
     const end = after.findIndex(({ depth }) => depth <= part.depth);
     return end < 0 ? after : after.slice(0, end);
@@ -84,12 +78,12 @@ export class Parts {
   /** Returns `true` if a part is locked or hidden, or belongs to a group that is. */
   private isOut(part: Part): boolean {
     const isOut = ({ name, selector }: Part) => this.hidden.has(name) || this.app.locks.includes(selector);
-    return this.all.some((p) => isOut(p) && (p === part || this.inside(p).includes(part)));
+    return this.all.some((p) => isOut(p) && (p === part || this.contentsOf(p).includes(part)));
   }
 
   /** Selects a part alone, or adds it to the selection, or removes it. */
   private toggle(part: Part, adds: boolean): void {
-    const { chosen } = this.app;
+    const { selectors: chosen } = this.app;
     const { selector } = part;
     const others = chosen.filter((s) => s !== selector);
     const isChosen = others.length < chosen.length;
@@ -101,7 +95,7 @@ export class Parts {
   private hide(part: Part): void {
     if (!this.hidden.delete(part.name)) this.hidden.add(part.name);
     this.show();
-    this.shade();
+    this.hideOnCanvas();
   }
 
   /** Locks or unlocks a part. No step bends locked parts. */
@@ -111,7 +105,7 @@ export class Parts {
   }
 
   private show(): void {
-    const { chosen, locks } = this.app;
+    const { selectors: chosen, locks } = this.app;
     const hides = this.all.length < 2 || this.app.isFirst(this.app.step);
     byId("parts-box").hidden = hides;
     // End the mode if its button is hidden, since users could not.
@@ -124,13 +118,13 @@ export class Parts {
     this.scope.textContent = count === 0 ? "This step bends everything." : `This step bends ${count === 1 ? "one part" : `${count} parts`}.`;
     byId("parts-all").hidden = count === 0;
     if (count > 0 || locks.length > 0) this.details.open = true;
-    const own = this.all.filter(({ selector }) => chosen.includes(selector));
-    this.stage.lightParts(this.modes.picksParts || this.details.open ? own.flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name) : []);
+    const selected = this.all.filter(({ selector }) => chosen.includes(selector));
+    this.stage.outlineParts(this.modes.picksParts || this.details.open ? selected.flatMap((p) => [p, ...this.contentsOf(p)]).map(({ name }) => name) : []);
   }
 
   /** Hides the hidden parts on the canvas. */
-  private shade(): void {
-    const away = new Set(this.all.filter(({ name }) => this.hidden.has(name)).flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name));
-    this.stage.hideParts(away);
+  private hideOnCanvas(): void {
+    const hidden = new Set(this.all.filter(({ name }) => this.hidden.has(name)).flatMap((p) => [p, ...this.contentsOf(p)]).map(({ name }) => name));
+    this.stage.hideParts(hidden);
   }
 }

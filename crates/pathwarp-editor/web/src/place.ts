@@ -22,7 +22,7 @@ export class Place {
     stage.onKeys = (handle) => this.say(handle);
     this.fields = this.inputs.map((input, i) => {
       // A percentage is a position in the box.
-      const place = (typed: string): number | null => {
+      const coordinate = (typed: string): number | null => {
         const q = evaluate(typed, "");
         const [x, y, w, h] = app.handles?.frame ?? [0, 0, 1, 1];
         if (!q || q.unit === "") return q?.value ?? null;
@@ -36,13 +36,13 @@ export class Place {
         stage.moveTo(this.handle!, i === 0 ? [value, at[1]] : [at[0], value]);
       };
       const read = () => (this.handle ? shown(this.handle)[i]! : "");
-      const isWrong = (typed: string) => (place(typed) === null ? `${asked("")} or 50 %` : null);
+      const isWrong = (typed: string) => (coordinate(typed) === null ? `${asked("")} or 50 %` : null);
       const take = (typed: string) => {
-        if (this.handle && typed !== read()) move(place(typed)!);
+        if (this.handle && typed !== read()) move(coordinate(typed)!);
         return null;
       };
       const nudge = (typed: string, by: number) => {
-        const value = place(typed);
+        const value = coordinate(typed);
         if (value === null || !this.handle) return null;
         move(value + by);
         return read();
@@ -54,9 +54,7 @@ export class Place {
     this.remove.addEventListener("click", () => {
       if (this.handle) stage.remove(this.handle);
     });
-    app.listen((change) => {
-      if (change === "handles") this.show(stage.focusedHandle);
-    });
+    app.listen(["handles"], () => this.show(stage.focusedHandle));
   }
 
   private show(handle: Handle | null): void {

@@ -12,7 +12,7 @@ const MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove
 /** The distance within which a handle snaps to a line, in px. */
 const SNAP = 7;
 /** The distance within which a press counts as a click, in px. */
-const SHAKES = 3;
+const CLICK_DISTANCE = 3;
 /** The least distance of a wheel's notch, in px; a trackpad reports less at a time. */
 const NOTCH = 50;
 /** Exponents of the magnification per px, for a trackpad's pinch and for a wheel. */
@@ -20,7 +20,7 @@ const PINCH_RATE = 0.01;
 const WHEEL_RATE = 0.002;
 
 /** Reactions to a pointer that is down. */
-interface Way {
+interface Reactions {
   move: (to: XY, e: PointerEvent) => void;
   end: () => void;
   /** Reacts to Escape, or to an undo. */
@@ -45,8 +45,8 @@ export class Pointing {
         if (this.down.has(pointerId)) this.down.set(pointerId, stage.point(e as PointerEvent));
       });
     }
-    app.listen((change) => {
-      if (change === "link" && !app.isLive) this.finish?.();
+    app.listen(["link"], () => {
+      if (!app.isLive) this.finish?.();
     });
     for (const end of ["pointerup", "pointercancel"] as const) window.addEventListener(end, (e) => this.down.delete(e.pointerId));
   }
@@ -65,8 +65,8 @@ export class Pointing {
   private press(e: PointerEvent): void {
     const { stage } = this;
     const target = e.target as Element;
-    // `picks` is set while a path is asked for, `isBefore` while no steps are shown; `picksParts` and `selects` are modes.
-    if (stage.picks) return stage.picked(e);
+    // `onPick` is set while a path is asked for, `isBefore` while no steps are shown; `picksParts` and `selects` are modes.
+    if (stage.onPick) return stage.pickAt(e);
     this.down.set(e.pointerId, stage.point(e));
     if (this.down.size > 2) return;
     if (this.down.size === 2) {
@@ -77,35 +77,34 @@ export class Pointing {
     const knob = target.closest<SVGGElement>(".knob");
     const part = target.closest<SVGGElement>(".part")?.dataset.part as Part | undefined;
     if (knob && bends) this.drag(e, knob);
-    else if (this.modes.picksParts && bends) this.pan(e, () => stage.pickedPart(e));
+    else if (this.modes.picksParts && bends) this.pan(e, () => stage.pickPartAt(e));
     else if (part && bends) this.transform(e, stage.selection.transform(part, stage.point(e)));
-    else if (bends && !e.shiftKey && stage.selection.holds(stage.point(e))) this.transform(e, moved(stage.point(e)), () => stage.select([]));
+    else if (bends && !e.shiftKey && stage.selection.holds(stage.point(e))) this.transform(e, translation(stage.point(e)), () => stage.select([]));
     else if (bends && (e.shiftKey || stage.selects)) this.frame(e);
     else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage.select([]));
   }
 
   /** Follows a pointer until it is lifted, Escape is pressed, or a second finger touches. Returns a function that cancels the action. */
-  private follow(e: PointerEvent, { move, end, cancel = end }: Way): () => void {
+  private follow(e: PointerEvent, { move, end, cancel = end }: Reactions): () => void {
     const stop = new AbortController();
-    const { signal } = stop;
-    const finish = (how: () => void) => {
+    const finish = (react: () => void) => {
       stop.abort();
       this.finish = null;
-      how();
+      react();
     };
     this.finish = () => finish(end);
-    const own = (action: (event: PointerEvent) => void) => (event: Event) => {
+    const onThisPointer = (action: (event: PointerEvent) => void) => (event: Event) => {
       if ((event as PointerEvent).pointerId === e.pointerId) action(event as PointerEvent);
     };
-    window.addEventListener(MOVES, own((event) => move(this.stage.point(event), event)), { signal });
-    for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, own(() => finish(end)), { signal });
+    window.addEventListener(MOVES, onThisPointer((event) => move(this.stage.point(event), event)), stop);
+    for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, onThisPointer(() => finish(end)), stop);
     window.addEventListener("keydown", (event) => {
       if (event.key === "Escape") finish(cancel);
-    }, { signal });
+    }, stop);
     return () => finish(cancel);
   }
 
-  /** Follows a pointer that changes the step by `move`; `done` cleans up. */
+  /** Follows a pointer that changes the step by `move`; `done` cleans up, and `clicked` reacts to a press without a move. */
   private bend(e: PointerEvent, move: (to: XY, e: PointerEvent) => void, done: () => void, clicked: () => void = () => {}): void {
     const { app } = this;
     const start = this.stage.point(e);
@@ -119,13 +118,13 @@ export class Pointing {
     const stop = () => {
       app.isDragging = false;
       app.hold = null;
-      this.stage.tell(null);
+      this.stage.showValue(null);
       done();
     };
-    const abandon = this.follow(e, {
+    app.hold = this.follow(e, {
       move: (to, event) => {
         // Small moves still count as a click.
-        hasMoved ||= Math.hypot(to[0] - start[0], to[1] - start[1]) >= SHAKES;
+        hasMoved ||= Math.hypot(to[0] - start[0], to[1] - start[1]) >= CLICK_DISTANCE;
         if (hasMoved) move(to, event);
       },
       end: () => {
@@ -138,7 +137,6 @@ export class Pointing {
         if (hasMoved) app.cancel(step, before);
       },
     });
-    app.hold = abandon;
   }
 
   private drag(e: PointerEvent, knob: SVGGElement): void {
@@ -152,20 +150,20 @@ export class Pointing {
     knob.focus({ preventScroll: true });
     if (e.shiftKey) stage.selection.keys = before;
     const [x, y] = stage.point(e);
-    const several = stage.several(handle);
+    const several = stage.selectedWith(handle);
     const adds = e.shiftKey;
     const clicked = () => {
       if (adds) stage.selection.toggle(handle.key);
       stage.select(adds ? Array.from(stage.selection.keys) : [handle.key]);
     };
-    if (several && !adds) return this.transform(e, moved([x, y]), clicked);
+    if (several && !adds) return this.transform(e, translation([x, y]), clicked);
     const grabbed = stage.camera.toScreen(handle.get());
     const mover = modes.mover(handles, handle);
     knob.classList.add("held");
     this.bend(e, (to, event) => {
       const target = stage.camera.toUser([grabbed[0] + to[0] - x, grabbed[1] + to[1] - y]);
       mover(modes.snapped(target, handle, handles, SNAP * stage.camera.pixel, event), event);
-      stage.changed(handle, event.timeStamp);
+      stage.writeHandle(handle, event.timeStamp);
     }, () => {
       knob.classList.remove("held");
       modes.clear();
@@ -182,8 +180,8 @@ export class Pointing {
     const mover = together(handles, stage.selection.of(handles), modes);
     e.preventDefault();
     this.bend(e, (to, event) => {
-      const there = image(to);
-      stage.changedAll(mover((p) => camera.toUser(there(camera.toScreen(p)))), event.timeStamp);
+      const map = image(to);
+      stage.writeParams(mover((p) => camera.toUser(map(camera.toScreen(p)))), event.timeStamp);
     }, () => stage.placeHandles(), clicked);
   }
 
@@ -203,7 +201,7 @@ export class Pointing {
       },
       end: () => {
         hide();
-        stage.select(Array.from(new Set([...before, ...stage.within(start, last)])));
+        stage.select(Array.from(new Set([...before, ...stage.keysInFrame(start, last)])));
       },
       cancel: hide,
     });
@@ -218,7 +216,7 @@ export class Pointing {
     const [x, y] = stage.point(e);
     // A line whose points are selected moves with the selection.
     if (pull.ends.length > 1 && pull.ends.every((key) => stage.selection.keys.has(key))) {
-      this.transform(e, moved([x, y]));
+      this.transform(e, translation([x, y]));
       return true;
     }
     const puller = modes.puller(handles, pull);
@@ -232,7 +230,7 @@ export class Pointing {
     return true;
   }
 
-  /** Moves the view; a click does something else. */
+  /** Moves the view; a press without a move calls `clicked` instead. */
   private pan(e: PointerEvent, clicked: () => void): void {
     const { stage } = this;
     const first = stage.point(e);
@@ -247,11 +245,12 @@ export class Pointing {
       end: () => {
         stage.svg.classList.remove("panning");
         const [x, y, w, h] = this.app.handles?.frame ?? [0, 0, 0, 0];
+        const distance = Math.hypot(last[0] - first[0], last[1] - first[1]);
         // The first of two fingers does not click.
-        if (Math.hypot(last[0] - first[0], last[1] - first[1]) < SHAKES && this.down.size < 2) clicked();
+        if (distance < CLICK_DISTANCE && this.down.size < 2) clicked();
         // Clear moves that began on the artwork call for a hint.
-        const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h;
-        if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
+        const isOnArtwork = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h;
+        if (isOnArtwork && distance > REACH / 4) this.onPan();
       },
     });
   }
@@ -260,21 +259,20 @@ export class Pointing {
   private pinch(): void {
     const [one, two] = Array.from(this.down.keys());
     const stop = new AbortController();
-    const { signal } = stop;
-    const middle = (): [XY, number] => {
+    const middleAndDistance = (): [XY, number] => {
       const [a, b] = [this.down.get(one!)!, this.down.get(two!)!];
       return [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(a[0] - b[0], a[1] - b[1])];
     };
-    let [at, apart] = middle();
+    let [from, distance] = middleAndDistance();
     window.addEventListener("pointermove", () => {
-      const [to, wide] = middle();
-      if (apart > 0) this.stage.zoom(wide / apart, at);
-      this.stage.shift([to[0] - at[0], to[1] - at[1]]);
-      [at, apart] = [to, wide];
-    }, { signal });
-    for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, () => stop.abort(), { signal });
+      const [to, newDistance] = middleAndDistance();
+      if (distance > 0) this.stage.zoom(newDistance / distance, from);
+      this.stage.shift([to[0] - from[0], to[1] - from[1]]);
+      [from, distance] = [to, newDistance];
+    }, stop);
+    for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, () => stop.abort(), stop);
   }
 }
 
-/** Returns the translation of points by the move of the pointer. */
-const moved = ([x, y]: XY) => (to: XY) => ([px, py]: XY): XY => [px + to[0] - x, py + to[1] - y];
+/** Returns the translations of points along with a pointer that pressed at a point. */
+const translation = ([x, y]: XY) => (to: XY) => ([px, py]: XY): XY => [px + to[0] - x, py + to[1] - y];

@@ -15,12 +15,10 @@ export class Report {
   private slow = 0;
 
   constructor(private app: App) {
-    app.listen((change) => {
-      if (change === "report" || change === "state") this.figures();
-      if (change === "state") this.buttons();
-      if (change === "handles" || change === "steps") this.hint();
-      if (change === "link") this.link();
-    });
+    app.listen(["report", "state"], () => this.figures());
+    app.listen(["state"], () => this.buttons());
+    app.listen(["handles", "steps"], () => this.hint());
+    app.listen(["link"], () => this.link());
     app.connection.onBusy = (isBusy) => this.busy(isBusy);
     byId("warnings").addEventListener("click", () => toast(app.warnings.join(" · ")));
   }
@@ -74,7 +72,7 @@ export class Report {
     if (app.appends) return show("note", "Choose the shape of the next step, or press Escape");
     if (app.steps.length === 0) return show("note", "Choose a shape");
     if (app.step?.hidden) return show("note", "This step is hidden: it bends nothing. The eye in the list brings it back");
-    if (app.tooSmall("along") !== null) return show("note", "The artwork is longer than its circle: pull the circle larger, or see the settings");
+    if (app.leastRadius("along") !== null) return show("note", "The artwork is longer than its circle: pull the circle larger, or see the settings");
     // The handles have not arrived yet.
     if (!handles) return;
     const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";

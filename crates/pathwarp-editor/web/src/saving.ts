@@ -5,6 +5,7 @@ import { byId, h } from "./dom";
 import { inUnits, inWords, reason } from "./fields";
 import { toast } from "./toast";
 
+/** Extensions, names and uses of the formats. */
 const FORMATS: [string, string, string][] = [
   ["svg", "SVG", "Can be opened here again"],
   ["svgz", "SVGZ", "The same, packed"],
@@ -16,14 +17,14 @@ const FORMATS: [string, string, string][] = [
   ["toml", "Recipe", "For other drawings"],
 ];
 
-const PICTURES = ["png", "jpg", "webp"];
-/** Usual and largest width of a picture, in px. */
-const WIDTH = 2000;
-const WIDEST = 20_000;
+const PICTURE_EXTENSIONS = ["png", "jpg", "webp"];
+/** Usual and largest width of a picture, in px; the latter limits percentages, too. */
+const USUAL_WIDTH = 2000;
+const LARGEST_WIDTH = 20_000;
 /** The key under which the browser stores the choices for pictures. */
-const REMEMBERED = "pathwarp-export";
+const CHOICES_KEY = "pathwarp-export";
 
-/** The choices made last. */
+/** The choices made last for pictures; the background is `none` or a colour. */
 interface Choices {
   unit: "px" | "%";
   size: number;
@@ -33,7 +34,7 @@ interface Choices {
 const NOTHING = "There is nothing to save yet: pull a blue point or choose a shape first";
 
 /** The time within which the browser starts a download, in ms. */
-const FETCHED = 60_000;
+const DOWNLOAD_START = 60_000;
 
 export class Saving {
   private dialog = byId<HTMLDialogElement>("save-dialog");
@@ -48,8 +49,8 @@ export class Saving {
   private background = byId<HTMLSelectElement>("save-background");
   private colour = byId<HTMLInputElement>("save-colour");
   /** The photograph for which the dialog last offered the full size, 100 %; empty for other drawings. */
-  private offered = "";
-  /** The steps downloaded last. */
+  private photographOffered = "";
+  /** The steps downloaded last, as JSON. */
   private downloaded = "";
 
   constructor(private app: App) {
@@ -59,7 +60,7 @@ export class Saving {
       input.addEventListener("change", () => this.choose(extension));
       formats.append(h("label", { class: "format" }, input, h("span", {}, h("b", {}, title), h("small", {}, use))));
     }
-    byId("save").addEventListener("click", () => void this.quick());
+    byId("save").addEventListener("click", () => void this.save());
     byId("save-as").addEventListener("click", () => void this.open());
     byId("save-cancel").addEventListener("click", () => this.dialog.close());
     this.dialog.querySelector("form")!.addEventListener("submit", (e) => {
@@ -67,15 +68,13 @@ export class Saving {
       void this.write(false);
     });
     this.replace.addEventListener("click", () => void this.write(true));
-    this.download.addEventListener("click", () => void this.fetch());
+    this.download.addEventListener("click", () => void this.downloadFile());
     for (const field of [this.name, this.folder, this.size]) field.addEventListener("input", () => this.say(""));
     this.background.addEventListener("change", () => (this.colour.hidden = this.background.value !== "colour"));
-    this.unit.addEventListener("change", () => (this.size.value = this.unit.value === "%" ? "100" : String(WIDTH)));
+    this.unit.addEventListener("change", () => (this.size.value = this.unit.value === "%" ? "100" : String(USUAL_WIDTH)));
     this.recall();
     byId("copy-command").addEventListener("click", () => void this.copyCommand());
-    app.listen((change) => {
-      if (change === "state") this.show();
-    });
+    app.listen(["state"], () => this.show());
   }
 
   private show(): void {
@@ -108,7 +107,7 @@ export class Saving {
 
   /** Hands the steps to the program that waits for them. */
   private async handOver(): Promise<void> {
-    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "hand-over" }));
+    const answer = await this.app.request({ do: "hand-over" });
     if (!answer?.done) return;
     this.app.finish();
     // Browsers only close pages that a script has opened.
@@ -116,16 +115,16 @@ export class Saving {
   }
 
   /** Saves to the file saved last or, the first time, to the usual one. */
-  async quick(): Promise<void> {
+  async save(): Promise<void> {
     if (this.dialog.open) return this.write(false);
     if (!(await this.app.settle())) return;
     const { state } = this.app;
     if (state?.program) return byId<HTMLButtonElement>("save").disabled ? undefined : this.handOver();
     if (!state) return;
     if (state.steps.length === 0) return this.open();
-    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
+    const answer = await this.app.request({ do: "save", name: null, replace: false });
     if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
-    if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
+    if (answer?.written) this.reportSaved(answer.written, answer.state, answer.warnings ?? []);
   }
 
   /** Opens the dialog for a name, with the reason if nothing could be written. */
@@ -138,8 +137,8 @@ export class Saving {
     this.name.value = state.target;
     this.choose("svg");
     if (!state.photograph) this.recall();
-    else if (this.offered !== state.drawing) [this.unit.value, this.size.value] = ["%", "100"];
-    this.offered = state.photograph ? state.drawing : "";
+    else if (this.photographOffered !== state.drawing) [this.unit.value, this.size.value] = ["%", "100"];
+    this.photographOffered = state.photograph ? state.drawing : "";
     this.folder.value = state.savedIn ?? state.folder;
     if (unwritable) this.refuse(unwritable);
     this.dialog.showModal();
@@ -148,7 +147,7 @@ export class Saving {
 
   /** Restores the choices made last. */
   private recall(): void {
-    const { unit = "px", size = WIDTH, background = "none" } = JSON.parse(localStorage.getItem(REMEMBERED) ?? "{}") as Partial<Choices>;
+    const { unit = "px", size = USUAL_WIDTH, background = "none" } = JSON.parse(localStorage.getItem(CHOICES_KEY) ?? "{}") as Partial<Choices>;
     const isColour = background.startsWith("#");
     [this.unit.value, this.size.value, this.background.value] = [unit, String(size), isColour ? "colour" : background];
     if (isColour) this.colour.value = background;
@@ -158,16 +157,16 @@ export class Saving {
   /** Returns the file in the dialog; `null` for a picture without a size. */
   private target(): Record<string, unknown> | null {
     const [name, folder] = [this.name.value, this.folder.value];
-    if (!PICTURES.includes(this.extension)) return { name, folder };
+    if (!PICTURE_EXTENSIONS.includes(this.extension)) return { name, folder };
     const unit = this.unit.value === "%" ? "%" : "px";
     const size = inUnits(this.size.value, unit) ?? NaN;
-    if (!(size > 0 && size <= WIDEST) || (unit === "px" && !Number.isInteger(size))) {
-      this.say(unit === "%" ? "The size is a number of per cent, such as 200" : `The width is a whole number of pixels up to ${WIDEST}`);
+    if (!(size > 0 && size <= LARGEST_WIDTH) || (unit === "px" && !Number.isInteger(size))) {
+      this.say(unit === "%" ? "The size is a number of per cent, such as 200" : `The width is a whole number of pixels up to ${LARGEST_WIDTH}`);
       return null;
     }
     const background = this.background.value === "colour" ? this.colour.value : this.background.value;
     // The offered size of a photograph is not stored.
-    if (!this.offered) localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background } satisfies Choices));
+    if (!this.photographOffered) localStorage.setItem(CHOICES_KEY, JSON.stringify({ unit, size, background } satisfies Choices));
     const picture = { ...(unit === "%" ? { scale: size / 100 } : { width: size }), background: background === "none" ? null : background };
     return { name, folder, picture };
   }
@@ -178,7 +177,7 @@ export class Saving {
     for (const input of Array.from(this.dialog.querySelectorAll<HTMLInputElement>("input[type=radio]"))) {
       input.checked = input.value === this.extension;
     }
-    byId("save-picture").hidden = !PICTURES.includes(extension);
+    byId("save-picture").hidden = !PICTURE_EXTENSIONS.includes(extension);
     this.say("");
   }
 
@@ -200,21 +199,21 @@ export class Saving {
       if (answer.exists) return this.say(`${answer.exists} exists already.`, true);
       if (answer.unwritable) return this.refuse(answer.unwritable);
       this.dialog.close();
-      this.done(answer.written ?? this.name.value, answer.state, answer.warnings ?? []);
+      this.reportSaved(answer.written ?? this.name.value, answer.state, answer.warnings ?? []);
     } catch (e) {
       this.say(inWords(reason(e)));
     }
   }
 
   /** Downloads the file, since the browser knows a writable folder. */
-  private async fetch(): Promise<void> {
+  private async downloadFile(): Promise<void> {
     const target = this.target();
     if (!target) return;
     try {
       const { written = this.name.value, bytes = "", warnings = [] } = await this.app.connection.ask({ do: "download", ...target });
       const href = URL.createObjectURL(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
       h("a", { href, download: written }).click();
-      setTimeout(() => URL.revokeObjectURL(href), FETCHED);
+      setTimeout(() => URL.revokeObjectURL(href), DOWNLOAD_START);
       this.dialog.close();
       if (/\.svgz?$/i.test(written)) this.downloaded = JSON.stringify(this.app.state?.steps);
       this.app.tell("state");
@@ -224,7 +223,7 @@ export class Saving {
     }
   }
 
-  private done(written: string, state: typeof this.app.state | undefined, warnings: string[]): void {
+  private reportSaved(written: string, state: typeof this.app.state | undefined, warnings: string[]): void {
     if (state) {
       this.app.state = state;
       this.app.tell("state");
@@ -237,21 +236,17 @@ export class Saving {
     await this.app.settle();
     const target = this.target();
     if (!target) return;
-    let line = "";
-    let said = "The command line is on the clipboard";
     try {
       const { text = "", written } = await this.app.connection.ask({ do: "command-line", ...target });
-      line = text;
-      if (written) said += `; ${written}, which it reads, is beside the drawing now`;
+      try {
+        await navigator.clipboard.writeText(text);
+        toast(`The command line is on the clipboard${written ? `; ${written}, which it reads, is beside the drawing now` : ""}`);
+      } catch {
+        toast(text);
+      }
+      this.dialog.close();
     } catch (e) {
-      return this.say(inWords(reason(e)));
+      this.say(inWords(reason(e)));
     }
-    try {
-      await navigator.clipboard.writeText(line);
-      toast(said);
-    } catch {
-      toast(line);
-    }
-    this.dialog.close();
   }
 }

@@ -2,11 +2,11 @@
 
 import { byId, s } from "./dom";
 import type { Handles } from "./handles";
-import type { Modes } from "./modes";
+import { reflection, type Modes } from "./modes";
 import type { Handle, XY } from "./types";
 
 /** Distances between the points and the box around them, and between the box and the rotation handle, in px. */
-const AROUND = 16;
+const BOX_MARGIN = 16;
 const ABOVE = 26;
 /** The distance within which the edge of the box counts as hit, in px. */
 const EDGE = 6;
@@ -61,12 +61,12 @@ export class Selection {
     this.layer.setAttribute("visibility", points.length > 1 ? "visible" : "hidden");
     if (points.length < 2) return;
     const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
-    const [x0, y0, x1, y1] = [Math.min(...xs) - AROUND, Math.min(...ys) - AROUND, Math.max(...xs) + AROUND, Math.max(...ys) + AROUND];
+    const [x0, y0, x1, y1] = [Math.min(...xs) - BOX_MARGIN, Math.min(...ys) - BOX_MARGIN, Math.max(...xs) + BOX_MARGIN, Math.max(...ys) + BOX_MARGIN];
     this.box = [[x0, y0], [x1, y1]];
     const middle = (x0 + x1) / 2;
     this.frame.setAttribute("d", `M${x0},${y0}H${x1}V${y1}H${x0}ZM${middle},${y0}V${y0 - ABOVE}`);
-    const places: Record<Part, XY> = { nw: [x0, y0], ne: [x1, y0], se: [x1, y1], sw: [x0, y1], turn: [middle, y0 - ABOVE] };
-    for (const [part, knob] of this.parts) knob.setAttribute("transform", `translate(${places[part].join(" ")})`);
+    const positions: Record<Part, XY> = { nw: [x0, y0], ne: [x1, y0], se: [x1, y1], sw: [x0, y1], turn: [middle, y0 - ABOVE] };
+    for (const [part, knob] of this.parts) knob.setAttribute("transform", `translate(${positions[part].join(" ")})`);
   }
 
   /** Returns `true` for a point in the box or on its edge. */
@@ -85,7 +85,7 @@ export class Selection {
       const [bx, by] = [to[0] - about[0], to[1] - about[1]];
       const [dot, cross] = [(ax * bx + ay * by) / square, (ax * by - ay * bx) / square];
       const size = Math.hypot(dot, cross) || 1;
-      // The pointer may leave the circle or the diagonal.
+      // The map multiplies by re + i·im; the pointer may leave the circle or the diagonal.
       const [re, im] = part === "turn" ? [dot / size, cross / size] : [dot, 0];
       return ([x, y]) => [about[0] + re * (x - about[0]) - im * (y - about[1]), about[1] + im * (x - about[0]) + re * (y - about[1])];
     };
@@ -101,7 +101,7 @@ export function together(handles: Handles, chosen: Handle[], modes: Modes): (ima
   const all = [...chosen.filter((h) => h.shape !== "control"), ...chosen.filter((h) => h.shape === "control"), ...arms];
   const starts = all.map((h): XY => [...h.get()]);
   const partners = all.map((h) => (modes.mirrors ? handles.partner(h) : null)).map((p) => (p && !all.includes(p) ? p : null));
-  const mirrored = modes.reflection(handles);
+  const mirrored = reflection(handles);
   return (image) => {
     const ends = starts.map(image);
     all.forEach((h, i) => h.set(ends[i]!, false));

@@ -1,8 +1,8 @@
 // The settings of a step: a control for each parameter, made from the registry's table.
 
 import type { App } from "./app";
-import { byId, h, s } from "./dom";
-import { asked, evaluate, Field, inUnits, type Quantity } from "./fields";
+import { button, byId, h, onFile, s } from "./dom";
+import { asked, evaluate, Field, inUnits, MM, type Quantity } from "./fields";
 import { capital, isCaption, paramName, words } from "./names";
 import { bring } from "./opening";
 import type { Sketch } from "./sketch";
@@ -11,14 +11,12 @@ import { BUNDLED } from "./words";
 import { adjustName, adjustUnit, arc, DRAGGED, readAdjust, short, writeAdjust } from "./values";
 
 /** The range of sliders for lengths, in percent of the artwork; shifts may be negative, too. */
-const OF_ARTWORK: [number, number] = [0, 100];
-const BOTH_WAYS: [number, number] = [-100, 100];
-/** Ranges from which arrow keys change values by 1. */
+const LENGTH_RANGE: [number, number] = [0, 100];
+const SHIFT_RANGE: [number, number] = [-100, 100];
+/** Ranges of at least this width let arrow keys change values by 1. */
 const COARSE = 20;
 /** Hints on unexpected behaviour of some deformations. */
 const NOTES: Record<string, string> = { mls: " Pins pull everything around them, also across gaps; pick a part to move it alone." };
-
-const MM = 96 / 25.4;
 /** Most words of a choice that are shown side by side. */
 const SIDE_BY_SIDE = 3;
 
@@ -31,7 +29,9 @@ const SKETCHES = {
 
 export class Settings {
   private box = byId("settings");
-  private shown = "";
+  /** Identifies the controls that have been built: step, deformation, adjust values, circles. */
+  private builtFor = "";
+  /** Functions that show present values in the controls. */
   private refreshers: (() => void)[] = [];
 
   /** Asks for a path on the canvas; a click returns its id. */
@@ -42,11 +42,8 @@ export class Settings {
   onOther: () => void = () => {};
 
   constructor(private app: App) {
-    app.listen((change) => {
-      if (change === "steps" || change === "state") this.build();
-      if (change === "handles") this.build();
-      if (change === "values") this.refresh();
-    });
+    app.listen(["steps", "state", "handles"], () => this.build());
+    app.listen(["values"], () => this.refresh());
   }
 
   private build(): void {
@@ -54,9 +51,10 @@ export class Settings {
     const deformation = this.app.deformation(step?.deformation);
     const params = deformation?.params ?? [];
     const circles = params.filter((p) => this.app.grip(p.name)?.circle).map((p) => p.name);
-    const signature = [this.app.selected, step?.deformation, ...this.adjusts(params), ...circles].join();
-    if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
-    this.shown = signature;
+    const adjusts = params.flatMap((p) => (this.app.grip(p.name)?.adjust ?? []).map((a) => `${a.name} ${a.least} ${a.most}`));
+    const signature = [this.app.selected, step?.deformation, ...adjusts, ...circles].join();
+    if (signature === this.builtFor && this.box.childElementCount > 0) return this.refresh();
+    this.builtFor = signature;
     this.onOther();
     this.refreshers = [];
     if (!step || !deformation) return this.box.replaceChildren();
@@ -98,13 +96,9 @@ export class Settings {
       case "name": return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.chooseFile(p)), this.select(p, id));
       case "number": case "length": case "angle": return this.slider(p, id, label, title);
       case "path": {
-        const pick = h("button", { type: "button", class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, "Pick from drawing");
-        pick.addEventListener("click", () => this.onPick((name) => this.app.set(p.name, [`#${name}`], true)));
-        const draws = (["line", "path", "circle"] as const).map((kind) => {
-          const button = h("button", { type: "button", class: "link", title: SKETCHES[kind] }, `Draw ${kind}`);
-          button.addEventListener("click", () => this.onDraw(kind, (value) => this.app.set(p.name, [value], true)));
-          return button;
-        });
+        const set = (value: string) => this.app.set(p.name, [value], true);
+        const pick = button({ class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, () => this.onPick((name) => set(`#${name}`)), "Pick from drawing");
+        const draws = (["line", "path", "circle"] as const).map((kind) => button({ class: "link", title: SKETCHES[kind] }, () => this.onDraw(kind, set), `Draw ${kind}`));
         const radius = this.app.grip(p.name)?.circle && this.radius(p, id);
         return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), ...(radius || []), this.text(p, id));
       }
@@ -132,7 +126,7 @@ export class Settings {
       select.value = value;
     };
     this.refreshers.push(show);
-    void this.app.attempt(() => this.app.connection.ask({ do: "families" })).then((answer) => {
+    void this.app.request({ do: "families" }).then((answer) => {
       select.append(...(answer?.families ?? []).map((name) => h("option", { value: name }, name)));
       show();
     });
@@ -151,15 +145,14 @@ export class Settings {
       const present = circle();
       return present ? app.setTyped(p.name, [arc([present[0], present[1], mm * unit, present[3], present[4]])]) : null;
     };
-    const field = new Field(input, () => short2((circle()?.[2] ?? 0) / unit).toString(), (text) => set(number(text)), (text) => (number(text) > 0 ? null : asked("mm", 0)));
+    const field = new Field(input, () => hundredths((circle()?.[2] ?? 0) / unit).toString(), (text) => set(number(text)), (text) => (number(text) > 0 ? null : asked("mm", 0)));
     const note = h("p", { class: "wrong", role: "status" });
-    const grow = h("button", { type: "button", class: "link" });
-    grow.addEventListener("click", () => void set(Number(grow.dataset.mm)));
-    const long = h("div", { hidden: true }, note, grow);
+    const grow = button({ class: "link" }, () => void set(Number(grow.dataset.mm)));
+    const warning = h("div", { hidden: true }, note, grow);
     this.refreshers.push(() => {
       field.refresh();
-      const least = app.tooSmall(p.name);
-      long.hidden = least === null;
+      const least = app.leastRadius(p.name);
+      warning.hidden = least === null;
       if (least === null) return;
       // Leave a gap between the end and the beginning.
       grow.dataset.mm = String(Math.ceil((10.6 * least) / unit) / 10);
@@ -167,7 +160,7 @@ export class Settings {
       grow.textContent = `Let the circle grow to ${grow.dataset.mm} mm`;
     });
     const row = h("div", { class: "row" }, h("label", { for: input.id }, "Radius"), h("span", { class: "measure" }, input, h("span", { class: "unit" }, "mm")));
-    return [row, field.message, long];
+    return [row, field.message, warning];
   }
 
   private flag(p: Param, id: string, title: string): HTMLElement {
@@ -190,10 +183,11 @@ export class Settings {
     return h("fieldset", { class: "field", title }, h("legend", {}, paramName(p)), h("div", { class: "segments" }, ...options));
   }
 
-  /** Returns a row with a field for a number in the unit of its value, and the line for its message. */
+  /** Returns a row with a field for a number in the unit of its value, or else the usual one, and the line for its message. Arrow keys
+   * change the value by `by`. */
   private number(p: Param, id: string, label: HTMLElement, usual: string, by: number): [HTMLElement, HTMLElement] {
     const isWhole = p.kind === "count";
-    const measure = h("span", { class: "unit" });
+    const unitLabel = h("span", { class: "unit" });
     // The program's values of angles and whole numbers have no unit.
     const text = (q: Quantity) => `${short(q.value)}${q.unit === "°" ? "" : q.unit}`;
     const present = (): Quantity | null => {
@@ -212,7 +206,9 @@ export class Settings {
     };
     const take = (typed: string) => (typed.trim() === "" ? this.app.setTyped(p.name, []) : this.app.setTyped(p.name, [text(evaluate(typed, unit())!)]));
     const nudge = (typed: string, times: number): string | null => {
-      const q = isWrong(typed) === null ? evaluate(typed, unit()) ?? this.derived(p, usual) : null;
+      if (isWrong(typed) !== null) return null;
+      const derived = this.inUnit(p, usual, this.current(p));
+      const q = evaluate(typed, unit()) ?? (derived === null ? null : { value: derived, unit: usual });
       if (!q) return null;
       const value = Math.min(Math.max(Number((q.value + times * by).toFixed(6)), least ?? -Infinity), most ?? Infinity);
       this.app.setSoon(p.name, [text({ value, unit: q.unit })]);
@@ -225,31 +221,20 @@ export class Settings {
     const input = h("input", { type: "text", id, class: "value", inputmode: "decimal", spellcheck: false, autocomplete: "off", placeholder: "auto" });
     const field = new Field(input, shown, take, isWrong, nudge);
     this.refreshers.push(() => {
-      measure.textContent = unit();
+      unitLabel.textContent = unit();
       field.refresh();
     });
-    return [h("div", { class: "row" }, label, h("span", { class: "measure" }, input, measure)), field.message];
-  }
-
-  /** Returns the value of a parameter that is not given. */
-  private derived(p: Param, unit: string): Quantity | null {
-    const value = this.inUnit(p, unit, this.current(p));
-    return value === null ? null : { value, unit };
+    return [h("div", { class: "row" }, label, h("span", { class: "measure" }, input, unitLabel)), field.message];
   }
 
   /** Returns a button to choose a file. Pages do not learn its folder, so it is copied beside the drawing. */
   private chooseFile(p: Param): HTMLElement {
     const input = h("input", { type: "file", hidden: true, "aria-label": paramName(p) });
-    input.addEventListener("change", async () => {
-      const file = input.files?.[0];
-      input.value = "";
-      if (!file) return;
+    onFile(input, async (file) => {
       const written = await bring(this.app, file);
       if (written) this.app.set(p.name, [written], true);
     });
-    const button = h("button", { type: "button", class: "link", title: "A copy is put beside the drawing" }, "Choose file…");
-    button.addEventListener("click", () => input.click());
-    return h("span", {}, input, button);
+    return h("span", {}, input, button({ class: "link", title: "A copy is put beside the drawing" }, () => input.click(), "Choose file…"));
   }
 
   private select(p: Param, id: string): HTMLSelectElement {
@@ -280,37 +265,32 @@ export class Settings {
     return h("div", {}, input, field.message);
   }
 
-  /** Returns the names of the adjust values shown. */
-  private adjusts(params: Param[]): string[] {
-    return params.flatMap((p) => (this.app.grip(p.name)?.adjust ?? []).map((a) => `${a.name} ${a.least} ${a.most}`));
-  }
-
   /** Returns the slider of an adjust value. */
   private adjust(p: Param, all: Adjust[], i: number, title: string): HTMLElement {
-    const { least, most, name } = all[i]!;
+    const { least, most, name, default: usual } = all[i]!;
     const [unit, size] = adjustUnit(all[i]!);
     const id = `set-${p.name}-${name}`;
     const range: [number, number] = [Math.ceil(least / size), Math.floor(most / size)];
     const slider = h("input", { type: "range", id: `${id}-slider`, min: range[0], max: range[1], step: step(range), "aria-label": adjustName(all, i) });
     const input = h("input", { type: "text", id, class: "value", inputmode: "decimal", spellcheck: false, autocomplete: "off" });
     const sign = unit === "deg" ? "°" : unit;
+    const present = () => {
+      const adjusts = structuredClone(all);
+      readAdjust(adjusts, this.values(p));
+      return adjusts;
+    };
     const values = (value: number) => {
-      const present = structuredClone(all);
-      readAdjust(present, this.values(p));
-      present[i]!.value = Math.min(Math.max(value * size, least), most);
-      return writeAdjust(present);
+      const adjusts = present();
+      adjusts[i]!.value = Math.min(Math.max(value * size, least), most);
+      return writeAdjust(adjusts);
     };
-    const current = () => {
-      const present = structuredClone(all);
-      readAdjust(present, this.values(p));
-      return Number((present[i]!.value! / size).toFixed(2));
-    };
-    this.slide(slider, (value) => [p.name, values(value)], () => values(all[i]!.default / size));
+    const current = () => hundredths(present()[i]!.value! / size);
+    this.slide(slider, (value) => [p.name, values(value)], () => values(usual / size));
     const isWrong = (typed: string) => {
-      const q = evaluate(typed || short(all[i]!.default / size), sign);
-      return q && q.unit === sign && q.value >= least / size && q.value <= most / size ? null : asked(sign, short2(least / size), short2(most / size));
+      const q = evaluate(typed || short(usual / size), sign);
+      return q && q.unit === sign && q.value >= least / size && q.value <= most / size ? null : asked(sign, hundredths(least / size), hundredths(most / size));
     };
-    const take = (typed: string) => this.app.setTyped(p.name, values(evaluate(typed, sign)?.value ?? all[i]!.default / size));
+    const take = (typed: string) => this.app.setTyped(p.name, values(evaluate(typed, sign)?.value ?? usual / size));
     const nudge = (typed: string, times: number) => {
       const q = isWrong(typed) === null ? evaluate(typed, sign) : null;
       if (!q) return null;
@@ -326,17 +306,17 @@ export class Settings {
     return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, h("span", { class: "measure" }, input, h("span", { class: "unit" }, sign))), field.message, slider);
   }
 
-  /** Connects a slider: a drag is one change, and so is a sequence of keys. */
+  /** Connects a slider: a drag is one change, and so is a sequence of keys. `values` gives a parameter's name and values. */
   private slide(slider: HTMLInputElement, values: (value: number) => [string, string[]], reset: () => string[]): void {
     const { app } = this;
-    let [isDragged, isGivenUp] = [false, false];
+    let [isDragged, isCancelled] = [false, false];
     slider.addEventListener("input", () => {
-      if (!slider.matches(":active") || isGivenUp) return;
+      if (!slider.matches(":active") || isCancelled) return;
       if (!isDragged) {
         const step = app.step!;
         const before = structuredClone(step);
         app.hold = () => {
-          isGivenUp = true;
+          isCancelled = true;
           app.cancel(step, before);
         };
       }
@@ -346,10 +326,10 @@ export class Settings {
     });
     slider.addEventListener("change", () => {
       app.hold = null;
-      if (isGivenUp) this.refresh();
+      if (isCancelled) this.refresh();
       else if (isDragged) app.set(...values(Number(slider.value)), true);
       else app.setSoon(...values(Number(slider.value)));
-      isDragged = isGivenUp = false;
+      isDragged = isCancelled = false;
     });
     slider.addEventListener("dblclick", () => app.set(values(0)[0], reset(), true));
   }
@@ -367,9 +347,8 @@ export class Settings {
       slider.value = String(value ?? range[0]);
       slider.classList.toggle("unset", value === null);
     });
-    const usual = p.kind === "angle" ? "°" : unit;
-    const [row, wrong] = this.number(p, id, label, usual, range[1] - range[0] >= COARSE ? 1 : step(range));
-    return h("div", { class: "field slider", title }, row, wrong, slider);
+    const [row, message] = this.number(p, id, label, p.kind === "angle" ? "°" : unit, range[1] - range[0] >= COARSE ? 1 : step(range));
+    return h("div", { class: "field slider", title }, row, message, slider);
   }
 
   /** Returns the value of a parameter in the unit of its slider. */
@@ -385,18 +364,19 @@ export class Settings {
   }
 }
 
-/** Draws three letters on an arc, as placed by an option of `glyphs`. */
+/** Draws three letters H on an arc, as placed by an option of `glyphs`. */
 function glyphs(word: string): SVGSVGElement {
   const [radius, height, half] = [22, 13, 4.5];
+  // Angles on the arc from its top, in radians.
   const letters = [-0.85, 0, 0.85].map((turn) => {
     const [sin, cos] = [Math.sin(turn), Math.cos(turn)];
     const along = ["rotate", "skew"].includes(word) ? [cos, sin] : [1, 0];
     const up = ["rotate", "ribbon"].includes(word) ? [sin, -cos] : [0, -1];
-    const place = (x: number, y: number) => {
+    const image = (x: number, y: number) => {
       const angle = turn + x / radius;
       return word === "bend" ? [(radius + y) * Math.sin(angle), -(radius + y) * Math.cos(angle)] : [radius * sin + x * along[0]! + y * up[0]!, -radius * cos + x * along[1]! + y * up[1]!];
     };
-    const line = (...points: [number, number][]) => `M${points.map(([x, y]) => place(x, y).map((v) => v.toFixed(1)).join(",")).join("L")}`;
+    const line = (...points: [number, number][]) => `M${points.map(([x, y]) => image(x, y).map((v) => v.toFixed(1)).join(",")).join("L")}`;
     const sides: [number, number][] = [[-half, 0], [-half, height / 2], [-half, height], [0, height], [half, height], [half, height / 2], [half, 0]];
     return line(...sides) + line([-half, height / 2], [half, height / 2]);
   });
@@ -419,18 +399,18 @@ function isMain(p: Param, isGiven: boolean): boolean {
 /** Returns the unit and the range of a slider. */
 function scale(p: Param): [string, [number, number]] {
   const [from, to] = p.slider;
-  if (p.kind === "length") return ["%", p.least === undefined && Number.parseFloat(p.default ?? "1") === 0 ? BOTH_WAYS : OF_ARTWORK];
+  if (p.kind === "length") return ["%", p.least === undefined && Number.parseFloat(p.default ?? "1") === 0 ? SHIFT_RANGE : LENGTH_RANGE];
   if (p.kind === "number" && p.default?.endsWith("%")) return ["%", [100 * from, 100 * to]];
   return ["", [from, to]];
 }
 
-/** Returns the step of a slider: a power of ten, about a thousandth of its range. */
+/** Returns the step of a slider: the largest power of ten of which its range has at least 400. */
 function step([from, to]: [number, number]): number {
-  const raw = (to - from) / 400;
-  return 10 ** Math.floor(Math.log10(Math.max(raw, 1e-9)));
+  return 10 ** Math.floor(Math.log10(Math.max((to - from) / 400, 1e-9)));
 }
 
-function short2(value: number): number {
+/** Rounds to two decimals. */
+function hundredths(value: number): number {
   return Number(value.toFixed(2));
 }
 
@@ -439,6 +419,7 @@ function sentence(title: string): string {
   return `${capital(plain(title))}${/[.…]$/.test(title) ? "" : "."}`;
 }
 
+/** Replaces options of the command line by the names of their settings. */
 function plain(text: string): string {
   return text.replace(/--([a-z-]+)/g, (_, name: string) => `“${words(name)}”`);
 }

@@ -20,11 +20,11 @@ const HINTS: Record<Sketch, string> = {
 };
 
 /** Distance within which clicks count as one point, in px. */
-const NEAR = 8;
+const SAME_POINT = 8;
 /** Turn from which a line around an object has a corner, in degrees. */
 const CORNER = 50;
 /** Angles of a circle's start and end, in degrees clockwise from the right: from the bottom over the top, where words are centred. */
-const [FROM, TO] = [90, 450];
+const [CIRCLE_START, CIRCLE_END] = [90, 450];
 
 export class Sketching {
   private line = s("path", { class: "lit" });
@@ -42,24 +42,24 @@ export class Sketching {
     const points: XY[] = [];
     const stop = new AbortController();
     const listen = { signal: stop.signal, capture: true };
-    const giveUp = () => this.end();
+    const cancel = () => this.end();
+    const hideHint = toast(HINTS[kind], true);
     this.stop = () => {
       stop.abort();
-      explained();
-      if (app.hold === giveUp) app.hold = null;
+      hideHint();
+      if (app.hold === cancel) app.hold = null;
     };
-    app.hold = giveUp;
+    app.hold = cancel;
     stage.svg.classList.add("picking");
-    const explained = toast(HINTS[kind], true); // Removes the instructions.
     const done = (value: string | null) => {
       this.end();
       if (value) take(value);
     };
     const text = (p: XY) => p.map(short).join(",");
-    const isNear = (a: XY, b: XY) => Math.hypot(a[0] - b[0], a[1] - b[1]) < NEAR * stage.camera.pixel;
-    const place = (e: PointerEvent) => stage.camera.toUser(stage.point(e));
+    const isNear = (a: XY, b: XY) => Math.hypot(a[0] - b[0], a[1] - b[1]) < SAME_POINT * stage.camera.pixel;
+    const userPoint = (e: PointerEvent) => stage.camera.toUser(stage.point(e));
     const path = (closed: boolean) => {
-      if (kind === "round") return points.length < 3 ? null : around(points, text);
+      if (kind === "round") return points.length < 3 ? null : smoothRing(points, text);
       return points.length < 2 ? null : `M${points.map(text).join(" L")}${closed ? " Z" : ""}`;
     };
     const isClicked = kind === "path" || kind === "round";
@@ -67,19 +67,19 @@ export class Sketching {
       if (e.button !== 0) return;
       e.stopPropagation();
       e.preventDefault();
-      const at = place(e);
+      const at = userPoint(e);
       if (kind === "point") return done(text(at));
       if (isClicked && points.length > 2 && isNear(at, points[0]!)) return done(path(true));
       if (points.length === 0 || !isNear(at, points[points.length - 1]!)) points.push(at);
       this.show(kind, points, at);
     }, listen);
-    stage.svg.addEventListener("pointermove", (e) => this.show(kind, points, place(e)), listen);
+    stage.svg.addEventListener("pointermove", (e) => this.show(kind, points, userPoint(e)), listen);
     window.addEventListener("pointerup", (e) => {
       if (isClicked || points.length === 0) return;
-      const [from, to] = [points[0]!, place(e)];
+      const [from, to] = [points[0]!, userPoint(e)];
       // A mere click draws nothing.
       if (isNear(from, to)) return void (points.length = 0);
-      done(kind === "line" ? `M${text(from)} L${text(to)}` : arc([...from, Math.hypot(to[0] - from[0], to[1] - from[1]), FROM, TO]));
+      done(kind === "line" ? `M${text(from)} L${text(to)}` : arc([...from, Math.hypot(to[0] - from[0], to[1] - from[1]), CIRCLE_START, CIRCLE_END]));
     }, listen);
     stage.svg.addEventListener("dblclick", (e) => {
       e.stopPropagation();
@@ -96,11 +96,11 @@ export class Sketching {
 
   private show(kind: Sketch, points: XY[], to: XY): void {
     if (points.length === 0) return;
-    const places = [...points, to].map((p) => this.stage.camera.toScreen(p));
-    const [[x, y], [px, py]] = [places[0]!, places.at(-1)!];
+    const onScreen = [...points, to].map((p) => this.stage.camera.toScreen(p));
+    const [[x, y], [px, py]] = [onScreen[0]!, onScreen.at(-1)!];
     const r = Math.hypot(px - x, py - y);
     const circle = `M${x - r},${y}a${r},${r} 0 1 1 ${2 * r},0a${r},${r} 0 1 1 ${-2 * r},0`;
-    this.line.setAttribute("d", kind === "circle" ? circle : `M${places.join("L")}`);
+    this.line.setAttribute("d", kind === "circle" ? circle : `M${onScreen.join("L")}`);
   }
 
   /** Ends drawing, or picking a path by a click: only one of them is under way at a time. */
@@ -113,7 +113,7 @@ export class Sketching {
 }
 
 /** Returns a closed line through points as path data: smooth, with tangents parallel to the line between neighbours, except at corners. */
-function around(points: XY[], text: (p: XY) => string): string {
+function smoothRing(points: XY[], text: (p: XY) => string): string {
   const at = (i: number) => points[(i + points.length) % points.length]!;
   const minus = ([ax, ay]: XY, [bx, by]: XY): XY => [ax - bx, ay - by];
   const tangent = (i: number): XY => {

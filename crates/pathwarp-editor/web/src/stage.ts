@@ -2,7 +2,7 @@
 
 import type { App } from "./app";
 import { Camera } from "./camera";
-import { byId, s } from "./dom";
+import { ARROWS, byId, s } from "./dom";
 import { apart, Drawing } from "./drawing";
 import { cells } from "./heat";
 import { Modes } from "./modes";
@@ -12,23 +12,22 @@ import { paramName } from "./names";
 import { toast } from "./toast";
 import type { Answer, Handle, XY } from "./types";
 
-/** Margin around the drawing when it fits the view, in px. */
+/** Margins around the drawing when it fits the view, in px; the second one is for narrow windows with an open panel. */
 const MARGIN = 56;
-const SHEET_MARGIN = 20;
+const NARROW_MARGIN = 20;
 /** Distance from hints and tools to handles, in px. */
-const BESIDE = 28;
+const TOOLS_GAP = 28;
 /** Distance within which a finger hits a handle, in px. */
 export const REACH = 18;
-
 /** Distance within which a path is picked, in px. */
-const PICKED = 8;
+const PICK_REACH = 8;
 /** The key under which the browser stores the deformations whose handles have been highlighted. */
-const GREETED = "pathwarp-greeted";
+const GREETED_KEY = "pathwarp-greeted";
 /** While something is dragged: tolerance of the faint result in px of the screen, and the longest time for it, in ms. */
-const DRAFT_OF_END = 1;
-const MOST_OF_END = 60;
+const END_TOLERANCE = 1;
+const END_TIME_LIMIT = 60;
 
-/** A box as two corners. */
+/** A box as its least and greatest x and y: x0, y0, x1, y1. */
 type Box = [number, number, number, number];
 
 export class Stage {
@@ -46,6 +45,7 @@ export class Stage {
   /** The result of all steps, behind the picture of fewer steps. */
   private aheadArt = s("g", { class: "ahead" });
   private heat = s("g", { class: "heat" });
+  /** Nodes of the picture's paths, and the lines to their control points. */
   private nodes = s("path", { class: "nodes" });
   private arms = s("path", { class: "arms" });
   /** Receives pointer events, so that the browser need not search the shapes of a large drawing. */
@@ -53,35 +53,35 @@ export class Stage {
   readonly selection = new Selection();
   /** The frame that selects points. */
   readonly marquee = s("rect", { class: "marquee", visibility: "hidden" });
-  private lit = s("path", { class: "lit" });
+  /** Outline of the path under the pointer. */
+  private highlight = s("path", { class: "lit" });
   /** Outlines of the parts that are selected, or pointed at in the list. */
-  private chosen = s("g", { class: "chosen-parts" });
-  private litParts: string[] = [];
-  /** The names of hidden parts. */
-  private away = new Set<string>();
+  private partOutlines = s("g", { class: "chosen-parts" });
+  private outlinedParts: string[] = [];
+  private hiddenParts = new Set<string>();
   /** The layer for lines that are being drawn. */
   readonly overlay = s("g", {});
   private guides = s("g", { class: "guides" });
-  private marks = s("g", { class: "marks" });
+  private foldMarks = s("g", { class: "marks" });
   private knobs = s("g", { class: "knobs" });
   /** The value of the dragged handle. */
   private value = s("text", { class: "value-of-drag" });
   private drawing = new Drawing(this.art);
-  private elements = new Map<string, SVGGElement>();
+  /** The knobs of handles, by their keys. */
+  private knobOf = new Map<string, SVGGElement>();
   private lines: SVGPathElement[] = [];
   /** Wide, invisible lines over draggable ones, by index. */
-  private reaches: (SVGPathElement | null)[] = [];
-  private focused: string | null = null;
+  private hitLines: (SVGPathElement | null)[] = [];
+  private focusedKey: string | null = null;
   /** `true` while the view shows the whole page, unmoved by the user. */
   private isFitted = false;
   /** `true` until the first picture of a drawing arrives. */
-  private isFresh = true;
-  /** The name of the drawing on show. */
-  private shown = "";
-  /** `true` until the handles of the first picture arrive. */
-  private isToFit = false;
+  private awaitsPicture = true;
+  private drawingName = "";
+  /** `true` from the first picture of a drawing until its handles arrive. */
+  private awaitsHandles = false;
   /** The page of the last picture when saved; null for the drawing's page. */
-  private grown: Answer["page"] = null;
+  private savedPage: Answer["page"] = null;
   /** `true` while the page shows the drawing without steps. */
   isBefore = false;
   showsNodes = false;
@@ -90,12 +90,12 @@ export class Stage {
   /** The deformation whose handles are highlighted. */
   private greeted = "";
   /** The time that the last faint result took, in ms. */
-  private endTook = 0;
-  /** If set, receives the next clicked path that a selector matches, and the clicked point; other reactions are disabled. */
-  picks: ((path: SVGGraphicsElement, at: XY) => void) | null = null;
-  private pickable = "";
-  /** Removes the request for a path. */
-  private answered: () => void = () => {};
+  private endTime = 0;
+  /** If set, receives the next clicked path that `pickSelector` matches, and the clicked point; other reactions are disabled. */
+  onPick: ((path: SVGGraphicsElement, at: XY) => void) | null = null;
+  private pickSelector = "";
+  /** Removes the message that asks for a path. */
+  private hideRequest: () => void = () => {};
   /** Returns further points that Fit shows, in px of the drawing. */
   around: () => XY[] = () => [];
   /** The names of the drawing's parts. */
@@ -108,52 +108,44 @@ export class Stage {
   readonly onLayout: (() => void)[] = [];
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.aheadArt, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.overlay, this.guides, this.marks, this.selection.layer, this.knobs, this.value, this.marquee);
+    this.svg.append(
+      s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.aheadArt, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield,
+      this.highlight, this.partOutlines, this.overlay, this.guides, this.foldMarks, this.selection.layer, this.knobs, this.value, this.marquee,
+    );
     const stage = this;
     app.screen = {
-      show: (answer) => this.show(answer),
+      show: (answer) => this.showAnswer(answer),
       reveal: () => this.reveal(),
       get pixel() { return stage.camera.pixel; },
     };
-    app.listen((change) => {
-      if (change === "state") this.place();
-      if (change === "handles") this.rebuild();
-      if (change === "report" && this.showsStretch) void this.drawStretch();
-      if (change === "report" || change === "steps") void this.drawEnd();
-    });
+    app.listen(["state"], () => this.takeState());
+    app.listen(["handles"], () => this.rebuild());
+    app.listen(["report"], () => this.showsStretch && void this.drawStretch());
+    app.listen(["report", "steps"], () => void this.drawEnd());
     this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
     this.svg.addEventListener("keydown", (e) => this.key(e));
     this.svg.addEventListener("keyup", (e) => {
       if (e.key === "Tab" && this.focusedHandle) this.panTo(this.focusedHandle);
     });
     this.svg.addEventListener("pointermove", (e) => {
-      if (this.picks) this.light(this.named(e, this.pickable));
-      else if (this.modes.picksParts) this.light(this.named(e, ".art *"));
+      if (this.onPick) this.outlinePath(this.pathAt(e, this.pickSelector));
+      else if (this.modes.picksParts) this.outlinePath(this.pathAt(e, ".art *"));
     });
-    new ResizeObserver(() => this.resized()).observe(this.svg);
+    new ResizeObserver(() => (this.isFitted || this.awaitsPicture ? this.fit() : this.layout())).observe(this.svg);
   }
 
-  private get size(): XY {
-    return [this.svg.clientWidth, this.svg.clientHeight];
-  }
-
-  private resized(): void {
-    if (this.isFitted || this.isFresh) this.fit();
-    else this.layout();
-  }
-
-  /** The part of the canvas that neither panels of a narrow window nor hints and tools cover, as two corners. */
+  /** The part of the canvas that neither panels of a narrow window nor hints and tools cover. */
   private get view(): Box {
-    const [width, height] = this.size;
+    const { clientWidth: width, clientHeight: height } = this.svg;
     const panel = document.querySelector("body.shapes-open nav, body.settings-open aside");
     if (!panel || getComputedStyle(panel).position === "static") {
-      const [side, up, down] = [Math.min(MARGIN, width / 10), byId("note").offsetHeight, byId("tools").offsetHeight];
-      return [side, Math.max(MARGIN, up + BESIDE), width - side, Math.max(height - Math.max(MARGIN, down + BESIDE), height / 2)];
+      const [side, hint, tools] = [Math.min(MARGIN, width / 10), byId("note").offsetHeight, byId("tools").offsetHeight];
+      return [side, Math.max(MARGIN, hint + TOOLS_GAP), width - side, Math.max(height - Math.max(MARGIN, tools + TOOLS_GAP), height / 2)];
     }
-    // Hints and tools are hidden then.
-    const { left, width: over } = panel.getBoundingClientRect();
-    if (over >= width) return [SHEET_MARGIN, SHEET_MARGIN, width - SHEET_MARGIN, Math.max(height - panel.clientHeight, height / 4) - SHEET_MARGIN];
-    return [(left > 0 ? 0 : over) + SHEET_MARGIN, SHEET_MARGIN, (left > 0 ? width - over : width) - SHEET_MARGIN, height - SHEET_MARGIN];
+    // An open panel hides hints and tools. It lies at the bottom, or else at the left or right side.
+    const { left, width: covered } = panel.getBoundingClientRect();
+    if (covered >= width) return [NARROW_MARGIN, NARROW_MARGIN, width - NARROW_MARGIN, Math.max(height - panel.clientHeight, height / 4) - NARROW_MARGIN];
+    return [(left > 0 ? 0 : covered) + NARROW_MARGIN, NARROW_MARGIN, (left > 0 ? width - covered : width) - NARROW_MARGIN, height - NARROW_MARGIN];
   }
 
   /** Shows the whole page and all handles. */
@@ -161,9 +153,9 @@ export class Stage {
     const [x0, y0, x1, y1] = this.view;
     if (!this.app.state || x1 <= x0 || y1 <= y0) return;
     const handles = (this.app.handles?.handles ?? []).map((h) => this.camera.inPx(h.get())).filter((p) => p.every(Number.isFinite));
-    const [a, b, c, d] = this.pageBox;
-    const all: XY[] = [[a, b], [c, d], ...handles, ...this.around()];
-    const [xs, ys] = [all.map((p) => p[0]), all.map((p) => p[1])];
+    const [left, top, right, bottom] = this.pageBox;
+    const points: XY[] = [[left, top], [right, bottom], ...handles, ...this.around()];
+    const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
     this.camera.fit([Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)], [x1 - x0, y1 - y0]);
     const [x, y] = this.camera.shift;
     this.camera.shift = [x + x0, y + y0];
@@ -200,49 +192,53 @@ export class Stage {
     this.layout();
   }
 
-  private place(): void {
+  private takeState(): void {
     const { state } = this.app;
     if (!state) return;
-    if (state.drawing !== this.shown) this.forget();
-    this.shown = state.drawing;
+    if (state.drawing !== this.drawingName) {
+      this.beforeArt.replaceChildren();
+      this.awaitsPicture = true;
+      this.savedPage = null;
+    }
+    this.drawingName = state.drawing;
     const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
     this.camera.toPx = state.toPx;
-    if (isNew || this.isFresh) {
+    if (isNew || this.awaitsPicture) {
       // The present picture may belong to another drawing.
-      this.isFresh = true;
+      this.awaitsPicture = true;
       this.fit();
     }
-    this.grow();
+    this.resizeSheet();
   }
 
-  private show(answer: Answer): void {
+  private showAnswer(answer: Answer): void {
     if (answer.picture) {
       this.drawing.show(answer.picture);
-      if ("whole" in answer.picture && this.away.size > 0) this.hideParts(this.away);
+      if ("whole" in answer.picture && this.hiddenParts.size > 0) this.hideParts(this.hiddenParts);
       // While something is dragged, the sheet grows, but the view stays.
-      this.grown = answer.page;
-      this.grow();
+      this.savedPage = answer.page;
+      this.resizeSheet();
     }
-    if (answer.summary && this.isFresh) {
-      this.isFresh = false;
-      this.isToFit = this.isFitted;
+    if (answer.summary && this.awaitsPicture) {
+      this.awaitsPicture = false;
+      this.awaitsHandles = this.isFitted;
     }
     if (this.showsNodes) this.drawNodes();
-    if (this.litParts.length > 0) this.lightParts(this.litParts);
-    this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
+    if (this.outlinedParts.length > 0) this.outlineParts(this.outlinedParts);
+    this.foldMarks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.foldMark(at)));
   }
 
-  /** The page when saved, as two corners in px of the drawing. */
+  /** The page when saved, in px of the drawing. */
   get pageBox(): Box {
     const { state } = this.app;
     if (!state) return [0, 0, 0, 0];
-    const [x, y, w, h] = this.grown ?? state.page;
+    const [x, y, w, h] = this.savedPage ?? state.page;
     const [[ax, ay], [bx, by]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h])];
     return [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
   }
 
   /** Resizes the sheet to the page. */
-  private grow(): void {
+  private resizeSheet(): void {
     const [x0, y0, x1, y1] = this.pageBox;
     for (const sheet of [...this.shadows, this.sheet]) {
       sheet.setAttribute("x", String(x0));
@@ -252,7 +248,7 @@ export class Stage {
     }
   }
 
-  private fold(at: XY): SVGGElement {
+  private foldMark(at: XY): SVGGElement {
     const [x, y] = this.camera.toScreen(at);
     const mark = s("g", { class: "fold", transform: `translate(${x} ${y})` }, s("circle", { r: 9 }), s("circle", { r: 2.5 }));
     mark.dataset.at = JSON.stringify(at);
@@ -260,23 +256,16 @@ export class Stage {
   }
 
   /** Shows the drawing without steps, or with them. */
-  async before(on: boolean): Promise<void> {
+  async showBefore(on: boolean): Promise<void> {
     if (on === this.isBefore) return;
     this.isBefore = on;
     if (on && this.beforeArt.childElementCount === 0) {
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "before" }));
+      const answer = await this.app.request({ do: "before" });
       this.beforeArt.replaceChildren(...Array.from(apart(answer?.svg, "before")?.children ?? []));
     }
     this.svg.classList.toggle("before", this.isBefore);
     this.art.setAttribute("visibility", this.isBefore ? "hidden" : "visible");
     this.beforeArt.setAttribute("visibility", this.isBefore ? "visible" : "hidden");
-  }
-
-  /** Prepares for another drawing. */
-  private forget(): void {
-    this.beforeArt.replaceChildren();
-    this.isFresh = true;
-    this.grown = null;
   }
 
   drawNodes(): void {
@@ -287,8 +276,7 @@ export class Stage {
 
   /** Shows or hides the stretch of the visible steps. */
   readonly drawStretch = latest(async () => {
-    const { app } = this;
-    const answer = this.showsStretch ? await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible })) : null;
+    const answer = this.showsStretch ? await this.app.request({ do: "stretch", steps: this.app.visible }) : null;
     const stretch = this.showsStretch ? answer?.stretch : null;
     this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
   });
@@ -297,12 +285,12 @@ export class Stage {
   readonly drawEnd = latest(async () => {
     const { app } = this;
     const isEarlier = () => this.showsEnd && app.selected < app.steps.length - 1;
-    // In a large drawing, skip this so that dragging stays fast.
-    const draft = app.isDragging ? DRAFT_OF_END * this.camera.pixel : null;
-    if (draft !== null && this.endTook > MOST_OF_END) return;
+    // During a drag, skip this in a large drawing.
+    const draft = app.isDragging ? END_TOLERANCE * this.camera.pixel : null;
+    if (draft !== null && this.endTime > END_TIME_LIMIT) return;
     const start = performance.now();
     const answer = isEarlier() ? await app.connection.ask({ do: "ahead", steps: app.steps, draft }).catch(() => null) : null;
-    if (answer) this.endTook = performance.now() - start;
+    if (answer) this.endTime = performance.now() - start;
     this.aheadArt.replaceChildren(...Array.from(apart(isEarlier() ? answer?.svg : undefined, "ahead")?.children ?? []));
   });
 
@@ -312,12 +300,12 @@ export class Stage {
     const layers = [...this.shadows, this.sheet, this.behind, this.aheadArt, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
     for (const layer of layers) layer.setAttribute("transform", camera.transform);
     this.checks.setAttribute("patternTransform", `scale(${1 / camera.scale})`);
-    for (const mark of Array.from(this.marks.children) as SVGGElement[]) {
+    for (const mark of Array.from(this.foldMarks.children) as SVGGElement[]) {
       const [x, y] = camera.toScreen(JSON.parse(mark.dataset.at!) as XY);
       mark.setAttribute("transform", `translate(${x} ${y})`);
     }
     this.placeHandles();
-    if (this.litParts.length > 0) this.lightParts(this.litParts);
+    if (this.outlinedParts.length > 0) this.outlineParts(this.outlinedParts);
     for (const follow of this.onLayout) follow();
   }
 
@@ -325,19 +313,18 @@ export class Stage {
   placeHandles(): void {
     const { handles } = this.app;
     if (!handles) return;
-    const at = (p: XY) => this.camera.toScreen(p).map((v) => v.toFixed(2)).join(",");
+    const screenPoint = (p: XY) => this.camera.toScreen(p).map((v) => v.toFixed(2)).join(",");
     handles.lines().forEach((line, i) => {
       const element = this.lines[i];
       if (!element) return;
-      const [first, ...rest] = line.points.map(at);
-      const close = line.closed ? "Z" : "";
-      const d = line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`;
+      const [first, ...rest] = line.points.map(screenPoint);
+      const d = `M${first}${line.cubic ? "C" : "L"}${rest.join(" ")}${line.closed ? "Z" : ""}`;
       element.setAttribute("d", d);
-      this.reaches[i]?.setAttribute("d", d);
+      this.hitLines[i]?.setAttribute("d", d);
     });
     for (const handle of handles.handles) {
       const [x, y] = this.camera.toScreen(handle.get());
-      this.elements.get(handle.key)?.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
+      this.knobOf.get(handle.key)?.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
     }
     this.selection.place(this.app.isDragging && this.app.hold ? null : handles, (p) => this.camera.toScreen(p));
   }
@@ -350,10 +337,10 @@ export class Stage {
   private rebuild(): void {
     const { handles } = this.app;
     this.svg.classList.toggle("selecting", this.selects);
-    this.elements.clear();
+    this.knobOf.clear();
     const lines = handles?.lines() ?? [];
     this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
-    this.reaches = lines.map((line) => (line.kind === "arm" ? null : s("path", { class: "pull" })));
+    this.hitLines = lines.map((line) => (line.kind === "arm" ? null : s("path", { class: "pull" })));
     const knobs = (handles?.handles ?? []).map((handle) => {
       const body = handle.shape === "control" ? s("rect", { x: -4, y: -4, width: 8, height: 8, rx: 1.5, class: "body" })
         : s("circle", { r: handle.shape === "source" ? 5 : 6.5, class: "body" });
@@ -366,41 +353,42 @@ export class Stage {
         if (!this.selection.keys.has(handle.key)) this.selection.take([handle.key]);
         this.focus(handle.key);
       });
-      this.elements.set(handle.key, knob);
+      this.knobOf.set(handle.key, knob);
       return knob;
     });
-    this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
-    const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
+    this.guides.replaceChildren(...this.lines, ...this.hitLines.filter((r) => r !== null));
+    const hadFocus = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
     this.greet();
+    // Nodes come last, above the handles that cover them.
     this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
     this.placeHandles();
-    if (this.isToFit && handles) {
-      this.isToFit = false;
+    if (this.awaitsHandles && handles) {
+      this.awaitsHandles = false;
       // The hint changes with the handles.
       queueMicrotask(() => this.reveal());
     }
-    if (this.focused) {
-      const again = this.elements.get(this.focused);
-      if (!again) this.focus(null);
-      else if (had) again.focus({ preventScroll: true });
-      else this.focus(this.focused);
+    if (this.focusedKey) {
+      const knob = this.knobOf.get(this.focusedKey);
+      if (!knob) this.focus(null);
+      else if (hadFocus) knob.focus({ preventScroll: true });
+      else this.focus(this.focusedKey);
     }
   }
 
   /** Highlights handles the first time that a deformation has some here. */
   private greet(): void {
-    const [name, known] = [this.app.step?.deformation, new Set((localStorage.getItem(GREETED) ?? "").split(" "))];
+    const [name, known] = [this.app.step?.deformation, new Set((localStorage.getItem(GREETED_KEY) ?? "").split(" "))];
     this.knobs.classList.toggle("greeting", name !== undefined && (name === this.greeted || !known.has(name)));
     if (!name || !this.app.handles || known.has(name)) return;
     this.greeted = name;
-    localStorage.setItem(GREETED, [...known, name].join(" ").trim());
+    localStorage.setItem(GREETED_KEY, [...known, name].join(" ").trim());
   }
 
-  /** Selects a handle. */
+  /** Makes a handle the one whose position is shown; null also clears the selection. */
   focus(key: string | null): void {
-    this.focused = key;
+    this.focusedKey = key;
     if (key === null) this.selection.take([]);
-    for (const [k, element] of this.elements) element.classList.toggle("selected", k === key || this.selection.keys.has(k));
+    for (const [k, knob] of this.knobOf) knob.classList.toggle("selected", k === key || this.selection.keys.has(k));
     this.selection.place(this.app.handles, (p) => this.camera.toScreen(p));
     this.onFocus(this.handle(key));
   }
@@ -410,17 +398,17 @@ export class Stage {
     this.selection.take(keys);
     const last = keys[keys.length - 1] ?? null;
     this.focus(last);
-    if (last) this.elements.get(last)?.focus({ preventScroll: true });
+    if (last) this.knobOf.get(last)?.focus({ preventScroll: true });
   }
 
   /** Returns the selected points if a handle is one of several. */
-  several(handle: Handle): Handle[] | null {
+  selectedWith(handle: Handle): Handle[] | null {
     const { handles } = this.app;
     return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.of(handles) : null;
   }
 
-  /** Returns the points in a frame between two points of the screen: nodes, or else control points. */
-  within([ax, ay]: XY, [bx, by]: XY): string[] {
+  /** Returns the keys of the points in a frame between two points of the screen: nodes, or else control points. */
+  keysInFrame([ax, ay]: XY, [bx, by]: XY): string[] {
     const inside = (this.app.handles?.handles ?? []).filter((h) => {
       const [x, y] = this.camera.toScreen(h.get());
       return (x - ax) * (x - bx) <= 0 && (y - ay) * (y - by) <= 0;
@@ -430,7 +418,7 @@ export class Stage {
   }
 
   get focusedHandle(): Handle | null {
-    return this.handle(this.focused);
+    return this.handle(this.focusedKey);
   }
 
   handle(key: string | null): Handle | null {
@@ -443,103 +431,102 @@ export class Stage {
     return [e.clientX - box.left, e.clientY - box.top];
   }
 
-  /** Lets the next click pick a path among those that a selector matches; the request is shown until then. */
-  pick(take: typeof this.picks, among = ".art [id]", wish = ""): void {
-    [this.picks, this.pickable] = [take, among];
+  /** Lets the next click pick a path among those that a selector matches; `request`, if any, is shown until then. */
+  pick(take: typeof this.onPick, selector = ".art [id]", request = ""): void {
+    [this.onPick, this.pickSelector] = [take, selector];
     this.svg.classList.toggle("picking", take !== null || this.modes.picksParts);
-    this.svg.classList.toggle("outlining", take !== null && among !== ".art [id]");
-    this.light(null);
-    this.answered();
-    this.answered = take && wish ? toast(wish, true) : () => {};
+    this.svg.classList.toggle("outlining", take !== null && selector !== ".art [id]");
+    this.outlinePath(null);
+    this.hideRequest();
+    this.hideRequest = take && request ? toast(request, true) : () => {};
   }
 
   /** Picks the clicked path; elsewhere, the request stays. */
-  picked(e: PointerEvent): void {
-    const named = this.named(e, this.pickable);
-    if (!named) return void toast("No path is there. Click one, or press Escape");
-    const take = this.picks;
+  pickAt(e: PointerEvent): void {
+    const path = this.pathAt(e, this.pickSelector);
+    if (!path) return void toast("No path is there. Click one, or press Escape");
+    const take = this.onPick;
     this.pick(null);
-    take?.(named, this.camera.toUser(this.point(e)));
+    take?.(path, this.camera.toUser(this.point(e)));
   }
 
-  /** Reports the clicked part. */
-  pickedPart(e: PointerEvent): void {
+  /** Reports the innermost part at the pointer, or the outermost copy that contains it; a copy is one part, whatever its content. */
+  pickPartAt(e: PointerEvent): void {
     let name: string | null = null;
-    for (let at: Element | null = this.named(e, ".art *"); at && !at.matches(".art"); at = at.parentElement) {
-      const own = partOf(at.id);
-      // A copy is one part, whatever its content.
-      if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
+    for (let element: Element | null = this.pathAt(e, ".art *"); element && !element.matches(".art"); element = element.parentElement) {
+      const part = partOf(element.id);
+      if (this.parts.has(part) && (name === null || part.startsWith("use at") || element.localName === "use")) name = part;
     }
-    this.light(null);
+    this.outlinePath(null);
     if (name !== null || !this.isHiddenAt(e)) this.onPart(name, e.shiftKey);
   }
 
   /** Returns `true` if a hidden part is at the pointer. */
   private isHiddenAt(e: PointerEvent): boolean {
-    const { away } = this;
+    const { hiddenParts } = this;
     this.hideParts(new Set());
-    const isThere = this.named(e, ".art *") !== null;
-    this.hideParts(away);
+    const isThere = this.pathAt(e, ".art *") !== null;
+    this.hideParts(hiddenParts);
     return isThere;
   }
 
   /** Returns the elements of parts in the picture. */
-  private ofParts(names: Set<string>): SVGGraphicsElement[] {
-    const all = names.size > 0 ? Array.from(this.art.querySelectorAll<SVGGraphicsElement>("[id]")) : [];
-    return all.filter(({ id }) => names.has(partOf(id)));
+  private elementsOf(parts: Set<string>): SVGGraphicsElement[] {
+    const all = parts.size > 0 ? Array.from(this.art.querySelectorAll<SVGGraphicsElement>("[id]")) : [];
+    return all.filter(({ id }) => parts.has(partOf(id)));
   }
 
   /** Draws the outlines of parts. */
-  lightParts(names: string[]): void {
-    this.litParts = names;
-    const outlines = this.ofParts(new Set(names)).flatMap((e) => (e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path"))));
-    this.chosen.replaceChildren(...outlines.map((path) => outlineOf(path, this.svg, s("path", { class: "lit" }))));
+  outlineParts(names: string[]): void {
+    this.outlinedParts = names;
+    const paths = this.elementsOf(new Set(names)).flatMap((e) => (e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path"))));
+    this.partOutlines.replaceChildren(...paths.map((path) => outlineOf(path, this.svg, s("path", { class: "lit" }))));
   }
 
   /** Hides parts in the picture. */
   hideParts(names: Set<string>): void {
-    this.away = names;
+    this.hiddenParts = names;
     for (const e of Array.from(this.art.querySelectorAll(".away"))) e.classList.remove("away");
-    for (const e of this.ofParts(names)) e.classList.add("away");
+    for (const e of this.elementsOf(names)) e.classList.add("away");
   }
 
-  /** Returns the path nearest to the pointer among those that the selector matches. */
-  private named(e: PointerEvent, which: string): SVGGraphicsElement | null {
-    for (let r = 0; r <= PICKED; r += 2) {
+  /** Returns the path nearest to the pointer among those that a selector matches, tried on circles around it. */
+  private pathAt(e: PointerEvent, selector: string): SVGGraphicsElement | null {
+    for (let r = 0; r <= PICK_REACH; r += 2) {
       for (let k = 0; k < (r === 0 ? 1 : 4 * r); k++) {
-        const a = (2 * Math.PI * k) / (4 * r || 1);
-        const there = document.elementFromPoint(e.clientX + r * Math.cos(a), e.clientY + r * Math.sin(a));
-        if (there instanceof SVGGraphicsElement && there.closest(which)) return there;
+        const angle = (2 * Math.PI * k) / (4 * r || 1);
+        const path = document.elementFromPoint(e.clientX + r * Math.cos(angle), e.clientY + r * Math.sin(angle));
+        if (path instanceof SVGGraphicsElement && path.closest(selector)) return path;
       }
     }
     return null;
   }
 
-  /** Highlights a path. */
-  private light(path: SVGGraphicsElement | null): void {
-    if (path) outlineOf(path, this.svg, this.lit);
-    else this.lit.setAttribute("d", "");
+  /** Draws the outline of a path under the pointer; null removes it. */
+  private outlinePath(path: SVGGraphicsElement | null): void {
+    if (path) outlineOf(path, this.svg, this.highlight);
+    else this.highlight.setAttribute("d", "");
   }
 
   /** Shows the value of the dragged handle beside it; null hides it. */
-  tell(handle: Handle | null): void {
+  showValue(handle: Handle | null): void {
     const { step } = this.app;
     const param = this.app.deformation(step?.deformation)?.params.find(({ name }) => name === handle?.param);
     const isNumber = param && ["number", "length", "angle", "count"].includes(param.kind);
     const [x, y] = handle?.get() ?? [0, 0];
     const digits = Math.max(0, Math.ceil(-Math.log10(this.camera.pixel)));
-    const place = [x, y].map((v) => v.toFixed(digits)).join(", ");
-    this.value.textContent = !handle ? "" : isNumber ? `${paramName(param)} ${step?.args[param.name]?.[0] ?? ""}${param.kind === "angle" ? "°" : ""}` : place;
+    const position = [x, y].map((v) => v.toFixed(digits)).join(", ");
+    this.value.textContent = !handle ? "" : isNumber ? `${paramName(param)} ${step?.args[param.name]?.[0] ?? ""}${param.kind === "angle" ? "°" : ""}` : position;
     const [sx, sy] = this.camera.toScreen([x, y]);
     this.value.setAttribute("x", String(sx + REACH));
     this.value.setAttribute("y", String(sy - REACH));
   }
 
   /** Writes the values of a moved handle, and requests a draft. */
-  changed(handle: Handle, since: number): void {
+  writeHandle(handle: Handle, since: number): void {
     this.app.handles!.write(handle.param);
     this.placeHandles();
-    if (this.app.hold) this.tell(handle);
+    if (this.app.hold) this.showValue(handle);
     this.onFocus(handle);
     this.app.tell("values");
     this.app.draft(since);
@@ -563,18 +550,20 @@ export class Stage {
   private key(e: KeyboardEvent): void {
     const handle = this.handle((e.target as Element).closest<SVGGElement>(".knob")?.dataset.key ?? null);
     if (!handle || !this.app.handles) return;
-    const by = ({ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] } as Record<string, XY>)[e.key];
-    if (by) {
+    const direction = ARROWS[e.key];
+    const several = this.selectedWith(handle);
+    if (direction) {
       e.preventDefault();
-      const far = e.shiftKey ? 10 : 1;
-      const [x, y] = this.camera.toScreen(handle.get());
-      const several = this.several(handle);
+      const px = e.shiftKey ? 10 : 1;
+      const shifted = (p: XY): XY => {
+        const [x, y] = this.camera.toScreen(p);
+        return this.camera.toUser([x + px * direction[0], y + px * direction[1]]);
+      };
       if (several) {
         this.app.commitSoon();
-        const shift = ([px, py]: XY): XY => [px + far * by[0], py + far * by[1]];
-        this.changedAll(together(this.app.handles, several, this.modes)((p) => this.camera.toUser(shift(this.camera.toScreen(p)))), performance.now());
+        this.writeParams(together(this.app.handles, several, this.modes)(shifted), performance.now());
       } else {
-        this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+        this.moveTo(handle, shifted(handle.get()));
       }
       this.onKeys(handle);
     } else if (e.key === "Insert") {
@@ -585,7 +574,6 @@ export class Stage {
       void this.add(at);
     } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
       e.preventDefault();
-      const several = this.several(handle);
       if (several) this.removeAll(several);
       else this.remove(handle);
     }
@@ -595,20 +583,22 @@ export class Stage {
   private removeAll(several: Handle[]): void {
     const { handles } = this.app;
     if (!handles) return;
-    const places = several.map(({ param, shape, get }) => ({ param, shape, at: [...get()] }));
-    // Removing one renumbers the others.
-    for (const { param, shape, at } of places) {
-      handles.handles.find((h) => h.param === param && h.shape === shape && h.get()[0] === at[0] && h.get()[1] === at[1])?.remove?.();
+    const points = several.map((handle) => ({ handle, at: [...handle.get()] as XY }));
+    for (const { handle, at: [x, y] } of points) {
+      const { param, shape } = handle;
+      // Removing one renumbers the others, which are then found by their positions.
+      const present = handles.handles.includes(handle) ? handle : handles.handles.find((h) => h.param === param && h.shape === shape && h.get()[0] === x && h.get()[1] === y);
+      present?.remove?.();
       handles.write(param);
     }
-    this.focused = handles.nearest(places[0]!.at as XY)?.key ?? null;
-    this.selection.take(this.focused ? [this.focused] : []);
+    this.focusedKey = handles.nearest(points[0]!.at)?.key ?? null;
+    this.selection.take(this.focusedKey ? [this.focusedKey] : []);
     this.app.tell("handles");
     void this.app.commit();
   }
 
   /** Writes the values of parameters whose handles have moved together, and requests a draft. */
-  changedAll(params: Set<string>, since: number): void {
+  writeParams(params: Set<string>, since: number): void {
     for (const param of params) this.app.handles!.write(param);
     this.placeHandles();
     this.onFocus(this.focusedHandle);
@@ -616,20 +606,12 @@ export class Stage {
     this.app.draft(since);
   }
 
-  /** Removes a point. */
+  /** Removes a point, and its reflection if symmetry is on. */
   remove(handle: Handle): void {
     const { handles } = this.app;
     if (!handle.remove || !handles) return;
-    const [at, param] = [handle.get(), handle.param];
-    const partner = this.modes.mirrors && !handles.isRows(param) ? handles.partner(handle) : null;
-    const mirrored = partner?.param === param ? partner.get() : null;
-    handle.remove();
-    // Removing one renumbers the others.
-    if (mirrored) handles.handles.find((h) => h.param === param && h.shape === handle.shape && h.get()[0] === mirrored[0] && h.get()[1] === mirrored[1])?.remove?.();
-    handles.write(param);
-    this.focused = handles.nearest(at)?.key ?? null;
-    this.app.tell("handles");
-    void this.app.commit();
+    const partner = this.modes.mirrors && !handles.isRows(handle.param) ? handles.partner(handle) : null;
+    this.removeAll(partner ? [handle, partner] : [handle]);
   }
 
   /** Moves a handle by keys or typed numbers. */
@@ -638,22 +620,22 @@ export class Stage {
     if (!handles) return;
     this.app.commitSoon();
     this.modes.mover(handles, handle)(to, null);
-    this.changed(handle, performance.now());
+    this.writeHandle(handle, performance.now());
   }
 }
 
 /** Serializes repeated work: requests during a run lead to one more run. */
 function latest(work: () => Promise<void>): () => Promise<void> {
-  let [isAsked, isWanted] = [false, false];
+  let [isRunning, isRequested] = [false, false];
   return async () => {
-    isWanted = true;
-    if (isAsked) return;
-    isAsked = true;
-    while (isWanted) {
-      isWanted = false;
+    isRequested = true;
+    if (isRunning) return;
+    isRunning = true;
+    while (isRequested) {
+      isRequested = false;
       await work();
     }
-    isAsked = false;
+    isRunning = false;
   };
 }
 
@@ -662,16 +644,15 @@ export function partOf(id: string): string {
   return id.replace(/^art-/, "");
 }
 
-/** The largest path whose outline is highlighted, in px. */
-const FARTHEST = 1e6;
+/** The largest path whose outline is drawn, in px: browsers take extremely long to draw the stroke of a larger one. */
+const LARGEST_OUTLINE = 1e6;
 
-/** Gives a path the outline of another path in the picture. */
-function outlineOf(path: SVGGraphicsElement, svg: SVGSVGElement, to: SVGPathElement): SVGPathElement {
-  const [from, m] = [svg.getBoundingClientRect(), path.getScreenCTM()];
+/** Makes `outline` the outline of a path in the picture, and returns it. */
+function outlineOf(path: SVGGraphicsElement, svg: SVGSVGElement, outline: SVGPathElement): SVGPathElement {
+  const [canvas, m] = [svg.getBoundingClientRect(), path.getScreenCTM()];
   const { width, height } = path.getBBox();
-  // Browsers take extremely long to draw the stroke of a very large path.
-  const isFar = m !== null && Math.hypot(width, height) * Math.hypot(m.a, m.b) > FARTHEST;
-  to.setAttribute("d", isFar ? "" : path.getAttribute("d") ?? "");
-  if (m) to.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
-  return to;
+  const isTooLarge = m !== null && Math.hypot(width, height) * Math.hypot(m.a, m.b) > LARGEST_OUTLINE;
+  outline.setAttribute("d", isTooLarge ? "" : path.getAttribute("d") ?? "");
+  if (m) outline.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - canvas.x} ${m.f - canvas.y})`);
+  return outline;
 }

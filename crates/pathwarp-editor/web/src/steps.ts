@@ -1,18 +1,18 @@
 // The list of steps: the selection of the edited one, their order, and adding and removing them.
 
 import type { App } from "./app";
-import { byId, h, icon } from "./dom";
+import { button, byId, h, icon } from "./dom";
 import { stepName } from "./names";
 import type { Step } from "./types";
 
 /** Distance within which a press counts as a click, in px. */
-const SHAKES = 5;
+const CLICK_DISTANCE = 5;
 
 export class Steps {
   private list = byId("steps");
-  /** The index to which a row has been moved. */
-  private moved: number | null = null;
-  /** The steps shown as lacking their letters. */
+  /** The index to which a row has been moved, whose focus follows. */
+  private movedTo: number | null = null;
+  /** The indices of the steps shown as lacking their letters. */
   private gone = "";
   /** `true` while a row is dragged, which is not a click on its button. */
   private isDragged = false;
@@ -20,11 +20,9 @@ export class Steps {
   private add = byId<HTMLButtonElement>("add-step");
 
   constructor(private app: App) {
-    app.listen((change) => {
-      if (change === "steps" || change === "state") this.build();
-      // The picture tells which steps wait for their letters.
-      if (change === "report" && app.gone.join() !== this.gone) this.build();
-    });
+    app.listen(["steps", "state"], () => this.build());
+    // The picture tells which steps wait for their letters.
+    app.listen(["report"], () => app.gone.join() !== this.gone && this.build());
     this.add.addEventListener("click", () => this.append());
     // The first click may have replaced the row.
     this.list.addEventListener("dblclick", (e) => {
@@ -51,9 +49,9 @@ export class Steps {
     const row = Array.from(this.list.children).indexOf(focused?.closest("li") as Element);
     this.list.replaceChildren(...steps.map((step, i) => this.row(step, i)));
     // Keep the focus nearby.
-    const near = focused ? this.list.children[Math.min(this.moved ?? row, steps.length - 1)] : null;
+    const near = focused ? this.list.children[Math.min(this.movedTo ?? row, steps.length - 1)] : null;
     (near?.querySelector<HTMLElement>(`[data-kind="${kind}"]:enabled`) ?? near?.querySelector<HTMLElement>(".step"))?.focus();
-    this.moved = null;
+    this.movedTo = null;
     if (appends) this.list.append(h("li", { class: "wanted" }, `${steps.length + 1}. Choose a shape`));
     this.add.setAttribute("aria-pressed", String(appends));
     this.note.hidden = selected >= steps.length - 1;
@@ -64,38 +62,32 @@ export class Steps {
   private row(step: Step, i: number): HTMLLIElement {
     const { app } = this;
     const { steps, selected } = app;
-    const first = steps.filter((s) => app.isFirst(s)).length;
+    // Edits come before deformations.
+    const edits = steps.filter((s) => app.isFirst(s)).length;
     const title = stepName(step, app.deformation(step.deformation));
     const count = step.select?.length ?? 0;
     const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
     const gone = app.gone.includes(i) && h("small", { class: "muted" }, count === 1 ? " (its letter is gone)" : " (its letters are gone)");
-    const choose = h("button", { type: "button", class: "step", "data-kind": "step", title: "Drag it to move it, double-click to rename it", "aria-current": i === selected ? "step" : undefined }, `${i + 1}. ${title}`, scope, gone);
-    choose.addEventListener("click", () => {
-      if (!this.isDragged) void app.select(i);
-    });
-    choose.addEventListener("pointerdown", (e) => this.drag(e, i, first, moved));
-    const moved = (to: number) => {
-      const others = steps.filter((_, k) => k !== i);
-      others.splice(to, 0, step);
-      this.moved = to;
-      void app.arrange(others, to);
+    const attributes = { class: "step", "data-kind": "step", title: "Drag it to move it, double-click to rename it", "aria-current": i === selected ? "step" : undefined };
+    const choose = button(attributes, () => this.isDragged || void app.select(i), `${i + 1}. ${title}`, scope, gone);
+    choose.addEventListener("pointerdown", (e) => this.drag(e, i, edits, moveTo));
+    const moveTo = (to: number) => {
+      this.movedTo = to;
+      void app.arrange(steps.toSpliced(i, 1).toSpliced(to, 0, step), to);
     };
     const hide = () => void app.arrange(steps.map((s, k) => (k === i ? { ...s, hidden: !step.hidden || undefined } : s)), selected);
-    const button = (name: "up" | "down" | "close" | "eye" | "copy" | "pen", label: string, action: () => void, disabled = false) => {
-      const b = h("button", { type: "button", class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, icon(name));
-      b.addEventListener("click", action);
-      return b;
-    };
+    const iconButton = (name: "up" | "down" | "close" | "eye" | "copy" | "pen", label: string, click: () => void, disabled = false) =>
+      button({ class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, click, icon(name));
     const remove = () => void app.arrange(steps.filter((_, k) => k !== i), steps.length - 2);
     return h(
       "li", { class: `${i === selected ? "chosen" : ""} ${step.hidden ? "hidden" : ""}` }, choose,
-      !app.isProposal && button("eye", `${step.hidden ? "Show" : "Hide"} ${title}`, hide),
-      steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i <= first),
-      steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i < first || i === steps.length - 1),
-      !app.isProposal && button("close", `Remove ${title}`, remove),
+      !app.isProposal && iconButton("eye", `${step.hidden ? "Show" : "Hide"} ${title}`, hide),
+      steps.length > 1 && iconButton("up", `Move ${title} up`, () => moveTo(i - 1), i <= edits),
+      steps.length > 1 && iconButton("down", `Move ${title} down`, () => moveTo(i + 1), i < edits || i === steps.length - 1),
+      !app.isProposal && iconButton("close", `Remove ${title}`, remove),
       !app.isProposal && i === selected && h("span", { class: "acts" },
-        button("pen", `Rename ${title}`, () => this.rename(i)),
-        i >= first && button("copy", `Duplicate ${title}`, () => void app.arrange(steps.toSpliced(i + 1, 0, structuredClone(step)), i + 1))),
+        iconButton("pen", `Rename ${title}`, () => this.rename(i)),
+        i >= edits && iconButton("copy", `Duplicate ${title}`, () => void app.arrange(steps.toSpliced(i + 1, 0, structuredClone(step)), i + 1))),
     );
   }
 
@@ -123,21 +115,21 @@ export class Steps {
     input.select();
   }
 
-  /** Follows a pointer that moves a row among those that may be exchanged. */
-  private drag(e: PointerEvent, i: number, first: number, moved: (to: number) => void): void {
+  /** Follows a pointer that moves a row among the edits, which come first, or among the deformations. */
+  private drag(e: PointerEvent, i: number, edits: number, moveTo: (to: number) => void): void {
     // Fingers scroll the list.
     if (e.pointerType === "touch" || e.button !== 0 || this.app.isProposal) return;
     const rows = Array.from(this.list.children);
-    const kin = (k: number) => k < first === i < first && k < this.app.steps.length;
+    const isAllowed = (k: number) => (k < edits) === (i < edits) && k < this.app.steps.length;
     this.isDragged = false;
     let to = i;
     const stop = new AbortController();
     window.addEventListener("pointermove", (event) => {
       if (event.pointerId !== e.pointerId) return;
-      this.isDragged ||= Math.abs(event.clientY - e.clientY) > SHAKES;
+      this.isDragged ||= Math.abs(event.clientY - e.clientY) > CLICK_DISTANCE;
       if (!this.isDragged) return;
-      const under = rows.findIndex((r, k) => kin(k) && event.clientY < r.getBoundingClientRect().bottom);
-      to = under >= 0 ? under : rows.findLastIndex((_, k) => kin(k));
+      const under = rows.findIndex((r, k) => isAllowed(k) && event.clientY < r.getBoundingClientRect().bottom);
+      to = under >= 0 ? under : rows.findLastIndex((_, k) => isAllowed(k));
       rows.forEach((r, k) => {
         r.classList.toggle("above", k === to && to < i);
         r.classList.toggle("below", k === to && to > i);
@@ -146,7 +138,7 @@ export class Steps {
     for (const end of ["pointerup", "pointercancel"]) {
       window.addEventListener(end, () => {
         stop.abort();
-        if (to !== i && end === "pointerup") moved(to);
+        if (to !== i && end === "pointerup") moveTo(to);
       }, stop);
     }
   }

@@ -1,6 +1,10 @@
 // The server's messages, and geometry.
 
 export type XY = [number, number];
+/** A box as x, y, width and height. */
+export type Frame = [number, number, number, number];
+/** A circle or arc: its centre's x and y, its radius, and its start and end angles in degrees, clockwise from the right. */
+export type Arc = [number, number, number, number, number];
 
 export interface Step {
   deformation: string;
@@ -81,7 +85,7 @@ export interface Net {
   lines: number[][];
 }
 
-/** A grid of cells in rows of `columns`: the images of their corners, each cell's factor of lengths, negative at folds. */
+/** The images of a grid's points, row by row, and for each cell the factor of lengths, which is negative in folds. */
 export interface Stretch {
   columns: number;
   points: (XY | null)[];
@@ -105,15 +109,14 @@ export interface Grip {
   pairs?: [XY, XY][];
   net?: Net;
   paths?: Subpath[][];
-  /** A circle or arc: its centre, radius, and start and end angles in degrees. */
-  circle?: [number, number, number, number, number];
+  circle?: Arc;
   value?: number;
   /** A surface as typed, with its lengths in units of the drawing. */
   surface?: { text: string; sizes: [string, number][] };
 }
 
 export interface StepGrips {
-  frame: [number, number, number, number]; // x, y, width, height
+  frame: Frame;
   params: Record<string, Grip>;
 }
 
@@ -136,8 +139,9 @@ export interface State {
   program: string | null;
   restored: boolean; // `true` if the steps are unsaved ones of an earlier session.
   problem: string | null; // The reason why the draft of unsaved steps could not be stored.
-  toPx: [number, number, number, number, number, number]; // The affine map of user units to px.
-  page: [number, number, number, number]; // x, y, width, height in user units
+  /** The coefficients of the map from user units to px of the drawing, as in SVG's `matrix`. */
+  toPx: [number, number, number, number, number, number];
+  page: Frame;
   missing: string[]; // Sentences about fonts and images that were not found.
   /** The words that the drawing was set from, if any. */
   words: Words | null;
@@ -177,7 +181,7 @@ export interface Answer {
   /** Characters that no font has. */
   lacking?: string[];
   /** The page of the saved result, if it is not the drawing's. */
-  page?: [number, number, number, number] | null;
+  page?: Frame | null;
   summary?: Summary;
   state?: State;
   catalogue?: Deformation[];
@@ -187,7 +191,7 @@ export interface Answer {
   moved?: number;
   at?: XY | null; // The point that the last step maps to the requested one, if there is one.
   text?: string; // The command line.
-  /** The stored background, with its content as base64 and its position, as in `Lie`. */
+  /** The stored background, with its content as base64 and its position in `lie`, a `Placement`. */
   background?: { name: string; type: string; bytes: string; lie: { x: number; y: number; width: number; turn: number }; opacity: string } | null;
   written?: string; // The name of the file written.
   exists?: string; // The name of an existing file that was not replaced.

@@ -1,8 +1,6 @@
 // Formats geometry as values of parameters.
 
-import type { Adjust, Grip, Param, Subpath, XY } from "./types";
-
-type Frame = [number, number, number, number];
+import type { Adjust, Arc, Frame, Grip, Param, Subpath, XY } from "./types";
 
 /** Notations whose values are dragged on the canvas. */
 export const DRAGGED = new Set(["X,Y:X,Y", "I,J:X,Y", "I,J,K:X,Y"]);
@@ -56,7 +54,7 @@ export function valuesOf(param: Param, grip: Grip, frame: Frame, before: string[
 }
 
 /** Formats a circle or arc as a value, in units of the drawing. */
-export function arc([cx, cy, r, from, to]: [number, number, number, number, number]): string {
+export function arc([cx, cy, r, from, to]: Arc): string {
   return `arc:r=${short(r)},from=${short(from)},to=${short(to)},cx=${short(cx)},cy=${short(cy)}`;
 }
 
@@ -70,14 +68,14 @@ function corners({ start, segments }: Subpath, frame: Frame): string {
 }
 
 /** The largest adjust value of a share of the box; others are angles. */
-const SHARES = 1e6;
+const LARGEST_SHARE = 1e6;
 /** One percent of the box, and one degree, as adjust values. */
 const PER_CENT = 1e3;
 const DEGREE = 6e4;
 
 /** Returns the unit in which an adjust value is shown, and its size. */
 export function adjustUnit(a: Adjust): [string, number] {
-  return a.most > SHARES ? ["deg", DEGREE] : ["%", PER_CENT];
+  return a.most > LARGEST_SHARE ? ["deg", DEGREE] : ["%", PER_CENT];
 }
 
 /** Returns the name of an adjust value for display. */

@@ -6,7 +6,9 @@ import { inUnits, inWords, reason } from "./fields";
 import { toast } from "./toast";
 
 export const BUNDLED = "Noto Sans (bundled)";
-const LARGEST = 2000;
+/** The largest size of words in mm, and the largest absolute spacing in percent. */
+const MAX_SIZE = 2000;
+const MAX_SPACING = 500;
 
 export class WordsDialog {
   private dialog = byId<HTMLDialogElement>("words-dialog");
@@ -35,9 +37,7 @@ export class WordsDialog {
       e.preventDefault();
       void this.set();
     });
-    app.listen((change) => {
-      if (change === "state") this.show();
-    });
+    app.listen(["state"], () => this.show());
   }
 
   private show(): void {
@@ -51,7 +51,7 @@ export class WordsDialog {
 
   private async open(): Promise<void> {
     if (!(await this.app.settle())) return;
-    const answer = this.families ? null : await this.app.attempt(() => this.app.connection.ask({ do: "families" }));
+    const answer = this.families ? null : await this.app.request({ do: "families" });
     this.families ??= answer?.families ?? [];
     const { text, font, size, spacing } = this.app.state?.words ?? { text: "", font: null, size: 20, spacing: 0 };
     [this.text.value, this.size.value, this.spacing.value, this.search.value] = [text, String(size), String(spacing), ""];
@@ -80,8 +80,8 @@ export class WordsDialog {
     const { app } = this;
     const [size, spacing] = [inUnits(this.size.value, "mm") ?? NaN, inUnits(this.spacing.value, "%") ?? NaN];
     if (this.text.value.trim() === "") return this.say("Type some words first");
-    if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
-    if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
+    if (!(size > 0 && size <= MAX_SIZE)) return this.say(`The size is a number of mm up to ${MAX_SIZE}, such as 20`);
+    if (!(Math.abs(spacing) <= MAX_SPACING)) return this.say("The spacing is a number of per cent, such as 5");
     try {
       const words = { text: this.text.value, font: this.font, size, spacing };
       await app.enter(async () => {

@@ -449,8 +449,12 @@ fn plain_frame(options: &CommonOptions, bounds: impl FnOnce() -> Option<Rect>) -
     let rect = match options.frame {
         FrameChoice::Default | FrameChoice::Artwork => bounds().unwrap_or(Rect::ZERO),
         FrameChoice::Rect(typed) => typed.rect([1.0; 2]),
-        FrameChoice::ViewBox => return Err(Failure::usage("--frame: there is no drawing that has a viewbox")),
-        FrameChoice::Lettering(_) => return Err(Failure::usage("--frame: there is no drawing that holds lettering")),
+        FrameChoice::ViewBox => {
+            return Err(Failure::usage("--frame: there is no drawing that has a viewbox; give X,Y,W,H"));
+        }
+        FrameChoice::Lettering(_) => {
+            return Err(Failure::usage("--frame: there is no drawing that holds lettering; give X,Y,W,H"));
+        }
     };
     Ok(Frame::new(rect))
 }

@@ -53,7 +53,10 @@ impl KerfReport {
             ));
         }
         if !self.crossing.is_empty() {
-            out.push(format!("contours that cross each other are no holes to --kerf: {}", list(&self.crossing)));
+            out.push(format!(
+                "--kerf does not treat contours that cross each other as holes: {}",
+                list(&self.crossing)
+            ));
         }
         if !self.lost.is_empty() {
             let contours = counted(self.lost.len(), "contour", "contours");

@@ -65,7 +65,9 @@ impl Crop {
         let image: Vec<Point> = image.collect();
         let bounds = image.iter().map(|p| Rect::from_points(*p, *p)).reduce(|a, b| a.union(b)).unwrap_or_default();
         if !(image.iter().all(|p| p.is_finite()) && bounds.width() > 0.0 && bounds.height() > 0.0) {
-            return Err(Failure::Geometry("--crop: the map is undefined on part of the frame".into()));
+            return Err(Failure::Geometry(
+                "--crop: the map is undefined on part of the frame; omit --crop, or choose a smaller frame".into(),
+            ));
         }
         Ok(Self { bounds, is_straight: is_box(&image, bounds) })
     }

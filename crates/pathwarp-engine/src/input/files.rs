@@ -40,7 +40,7 @@ pub fn bytes(input: &Path) -> Result<Vec<u8>, Failure> {
     io::stdin().lock().read_to_end(&mut bytes).map_err(|e| Failure::Input(format!("standard input: {e}")))?;
     meter::count_input(bytes.len());
     if bytes.starts_with(XCF_MAGIC) {
-        return Err(Failure::Input("standard input: reading an XCF requires seeking; name the file instead".into()));
+        return Err(Failure::Input("standard input: an XCF cannot be read from it; name the file instead".into()));
     }
     Ok(bytes)
 }
@@ -193,7 +193,7 @@ pub fn described(bytes: &[u8], name: &Path) -> Option<String> {
     }
     if ["png", "jpg", "jpeg", "webp"].contains(&extension) && !text.starts_with(b"<") {
         return Some(
-            "begins as no PNG, JPEG or WebP picture does: it is damaged, or something else; get a whole copy of it"
+            "does not begin as a PNG, JPEG or WebP picture: it is damaged, or something else; get a whole copy of it"
                 .to_owned(),
         );
     }
@@ -239,7 +239,7 @@ fn likely_meaning(name: &Path) -> Option<String> {
     }
     if let (false, [letter @ (b'a'..=b'z' | b'A'..=b'Z'), b':', ..]) = (cfg!(windows), text.as_bytes()) {
         let (drive, rest) = (char::from(letter.to_ascii_lowercase()), text[2..].replace('\\', "/"));
-        return Some(format!("it is a path of Windows, which WSL calls /mnt/{drive}{rest}"));
+        return Some(format!("it is a path of Windows; in WSL, write /mnt/{drive}{rest}"));
     }
     let slashes = text.replace('\\', "/");
     if slashes != text && Path::new(&slashes).exists() {

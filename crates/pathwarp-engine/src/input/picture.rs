@@ -40,7 +40,9 @@ impl PictureArtwork {
         target: Option<&Path>,
     ) -> Result<Self, Failure> {
         let format = Choice { what: "a picture is", among: PICTURES }.format(target, options.format)?;
-        let format = format.of_picture(options.quality).ok_or_else(|| Failure::usage("the format is no picture's"))?;
+        let format = format
+            .of_picture(options.quality)
+            .ok_or_else(|| Failure::usage("the format is not one of pictures; choose png, jpg or webp"))?;
         let name = display(input);
         for (given, option) in [
             (!options.select.is_empty(), "select"),

@@ -309,7 +309,7 @@ pub(super) fn outset_step(text: &str) -> Result<Option<Step>, String> {
 /// Parses a side of a page.
 pub(super) fn side_of_page(text: &str) -> Result<Length, String> {
     let length = positive_length(text)?;
-    if length.unit == LengthUnit::Percent { Err(format!("`{text}` is no length, such as 80mm")) } else { Ok(length) }
+    if length.unit == LengthUnit::Percent { Err(format!("`{text}` is not a length, such as 80mm")) } else { Ok(length) }
 }
 
 /// Parses proportions: `W:H`, or the name of a sheet.

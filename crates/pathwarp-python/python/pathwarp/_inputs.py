@@ -193,7 +193,7 @@ def stroked(data: str, width: float, join: str, cap: str) -> bytes:
     """A drawing of a line along path data."""
     for name, word, words in (("join", join, ("miter", "round", "bevel")), ("cap", cap, ("butt", "round", "square"))):
         if word not in words:
-            raise UsageError(f"{name}: `{word}` is none of {', '.join(words)}")
+            raise UsageError(f"{name}: `{word}` is not one of {', '.join(words)}")
     if _native.path_box(data) is None:
         # The error that names the first bad place; nothing is drawn for no path.
         _native.Warper.edit("simplify", []).warp_path(data)

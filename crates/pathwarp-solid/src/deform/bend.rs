@@ -111,7 +111,7 @@ impl Bend3 {
         }
         let through = self.through.unwrap_or(self.bounds.center());
         if let Some(h) = self.handles.iter().find(|h| h.level == 1 && [h.side, h.up].contains(&Some(DVec3::ZERO))) {
-            let problem = "vanishes: the model would collapse there; make it longer";
+            let problem = "has no length: the model would collapse there; make it longer";
             return Err(Error::usage(param_of(h), h.index.to_string(), problem));
         }
         let (pieces, knots) = self.pieces(through)?;
@@ -175,7 +175,7 @@ impl Bend3 {
         };
         match self.handles.first() {
             Some(h) => {
-                let problem = "is a handle, and only a skeleton of points takes handles";
+                let problem = "goes with `skeleton` alone: a `preset` takes no handles";
                 Err(Error::usage(param_of(h), h.index.to_string(), problem))
             }
             None => Ok((vec![preset], vec![0.0, 1.0])),
@@ -745,7 +745,7 @@ fn spine(s: &Settings3<'_>) -> Result<Spine3, Error> {
         });
     }
     if let Some(name) = ["angle", "factor"].into_iter().find(|n| s.flat().given(n)) {
-        return Err(Error::usage(name, s.words(name).join(" "), "is for a `preset`"));
+        return Err(Error::usage(name, s.words(name).join(" "), "is for a `preset`, and there is none; omit it"));
     }
     let points = s.listed_points("skeleton")?;
     if points.len() < 2 {

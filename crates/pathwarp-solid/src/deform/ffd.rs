@@ -172,7 +172,11 @@ impl Ffd3 {
     fn apply_pins(&self, lattice: &mut Lattice3, warnings: &mut Vec<String>) -> Result<(), Error> {
         let shown = |(p, q): &(DVec3, DVec3)| format!("{}:{}", show(*p), show(*q));
         if let Some(extra) = self.pins.get(MAX_PINS) {
-            return Err(Error::usage("pin", shown(extra), format!("is one too many: {MAX_PINS} pins at most")));
+            return Err(Error::usage(
+                "pin",
+                shown(extra),
+                format!("is one pin too many; at most {MAX_PINS} are possible"),
+            ));
         }
         let region = lattice.region();
         // For each pin, the influences of the control points that may move, and the displacement that they have to add up to.
@@ -294,7 +298,7 @@ pub(super) fn read(name: &str, text: &str, frame: Box3) -> Result<(Lattice3, boo
             _ => return Err(wrong(format!("point {i},{j},{k} is neither x, y, z nor x, y, z, weight"))),
         };
         if !(p.abs().max_element() < 1e100 && w.abs() < 1e100) {
-            return Err(wrong(format!("point {i},{j},{k} is larger than 1e100")));
+            return Err(wrong(format!("point {i},{j},{k} has a number larger than 1e100")));
         }
         lattice.place(node, p);
         lattice.set_weight(node, w);
@@ -500,7 +504,9 @@ fn frozen_layers(s: &Settings3<'_>) -> Result<[usize; 6], Error> {
             let problem = format!("is not FACE:COUNT with a face {}, such as left:2", FACES.join(", "));
             Error::usage("freeze", word, problem)
         })?;
-        counts[face] = count.parse().map_err(|_| Error::usage("freeze", word, "does not end with a number"))?;
+        counts[face] = count
+            .parse()
+            .map_err(|_| Error::usage("freeze", word, "does not end with a whole number, such as left:2"))?;
     }
     Ok(counts)
 }

@@ -64,7 +64,7 @@ impl Wrap3 {
     pub fn build(&self) -> Result<Built3, Error> {
         for (name, r) in [("radius", Some(self.radius)), ("top-radius", self.far)] {
             if let Some(r) = r.filter(|r| !(*r > 0.0 && r.is_finite())) {
-                return Err(Error::usage(name, show(r), "is not positive"));
+                return Err(Error::usage(name, show(r), "must be larger than 0"));
             }
         }
         let across = usize::from(self.level);
@@ -177,7 +177,9 @@ impl Map3 for Unwrapped {
 /// Reads a radius, given directly or as a diameter.
 fn radius(s: &Settings3<'_>, [radius, diameter]: [&str; 2]) -> Result<Option<f64>, Error> {
     match (s.last(radius), s.last(diameter)) {
-        (Some(_), Some(text)) => Err(Error::usage(diameter, text, format!("and `{radius}` say the same; give one"))),
+        (Some(_), Some(text)) => {
+            Err(Error::usage(diameter, text, format!("and `{radius}` both set the radius; give one")))
+        }
         (Some(text), None) => s.length_in(radius, text, Extent::X).map(Some),
         (None, Some(text)) => s.length_in(diameter, text, Extent::X).map(|d| Some(d / 2.0)),
         (None, None) => Ok(None),

@@ -83,10 +83,10 @@ impl<'a> Bends<'a> {
     /// If maps share clip paths or masks, resolves the drawing again with one copy of them for each map.
     pub(crate) fn divided(&self, drawing: &Drawing) -> Result<Option<Drawing>, Error> {
         let Scene { clips, masks, .. } = drawing.scene();
-        let mut all = clips.iter().map(|c| &c.referrers).chain(masks.iter().map(|m| &m.referrers));
+        let mut referrers = clips.iter().map(|c| &c.referrers).chain(masks.iter().map(|m| &m.referrers));
         let bend_of = |r: &Referrer| self.bend_of(r.owner.or(r.element));
-        let is_shared = |all: &[Referrer]| all.windows(2).any(|pair| bend_of(&pair[0]) != bend_of(&pair[1]));
-        let divides = self.everything.is_none() && all.any(|referrers| is_shared(referrers));
+        let is_shared = |all: &Vec<Referrer>| all.windows(2).any(|pair| bend_of(&pair[0]) != bend_of(&pair[1]));
+        let divides = self.everything.is_none() && referrers.any(is_shared);
         divides.then(|| drawing.divided(self.of_element.clone())).transpose()
     }
 
@@ -100,8 +100,8 @@ impl<'a> Bends<'a> {
         scene.clips.iter().for_each(|c| fill(&c.parts, c.bend, &c.referrers));
         scene.masks.iter().for_each(|m| fill(&m.parts, m.bend, &m.referrers));
         for (i, (bend, p)) in out.iter_mut().zip(&scene.parts).enumerate() {
-            let text = p.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");
-            if far.holds(i) || p.role == PartRole::Pattern || (text && self.options.skips_text()) {
+            let is_text = p.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");
+            if far.holds(i) || p.role == PartRole::Pattern || (is_text && self.options.skips_text()) {
                 *bend = None;
             }
         }

@@ -53,14 +53,13 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     let mut outcomes = Vec::with_capacity(scene.parts.len());
     // Index each element's report, since tiles and markers may come between the parts of an element.
     let mut reports: HashMap<ElementId, usize> = HashMap::new();
-    for (i, r) in results.into_iter().enumerate() {
-        let part = &scene.parts[i];
-        outcomes.push(match r {
+    for (i, result) in results.into_iter().enumerate() {
+        let (part, id) = (&scene.parts[i], &drawing.shapes()[i].id);
+        outcomes.push(match result {
             None => PartOutcome::Kept,
             Some(Ok(warped)) if united.absorbs(i) => PartOutcome::Warped(Box::new(warped)),
             Some(Ok(mut warped)) => {
                 let stays = matches!(options.edit, Some(Edit::Simplify { .. })) && warped.reset_if_no_fewer();
-                let id = &drawing.shapes()[i].id;
                 if let Some(why) = &warped.unpainted {
                     out.warnings.push(Warning::FittedGradient { id: id.clone(), why: why.to_string() });
                 }
@@ -70,17 +69,16 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
                 let element = part.element();
                 let known = element.and_then(|e| reports.get(&e).copied());
                 let copies = part_bends[i].map_or(0, |k| bends.each[k].options.copies.len());
-                let report = out.report(id.clone(), &warped, copies.max(1), known);
+                let report = out.report(id, &warped, copies.max(1), known);
                 reports.extend(element.map(|e| (e, report)));
                 if stays { PartOutcome::Kept } else { PartOutcome::Warped(Box::new(warped)) }
             }
             // Tiles extend past their shape and may leave the map's domain. The pattern then follows as a whole.
             Some(Err(e)) if part.in_tile && !matches!(e, GeometryError::Limit(_)) => PartOutcome::Kept,
             Some(Err(e)) => {
-                let id = &drawing.shapes()[i].id;
                 let e = e.on_shape(id);
-                let limited = matches!(e, GeometryError::Limit(_));
-                if limited || (options.on_error == OnError::Stop && part.painted()) {
+                let is_limit = matches!(e, GeometryError::Limit(_));
+                if is_limit || (options.on_error == OnError::Stop && part.painted()) {
                     return Err(Error::Geometry(e));
                 }
                 out.skipped.push(Skipped { id: id.clone(), why: e.to_string() });
@@ -111,22 +109,22 @@ fn warp_parts(
     (slots, united): (&[PlacedSlot], &United),
 ) -> Vec<Option<Result<WarpedPart, GeometryError>>> {
     /// With fewer segments, starting threads takes longer than the work.
-    const WORTH_IT: usize = 1000;
+    const WORTH_THREADS: usize = 1000;
     let scene = drawing.scene();
     let (parts, shapes) = (&scene.parts, drawing.shapes());
     let pieces: Vec<_> = bends.each.iter().map(|b| task::placed_letters(drawing, &b.options)).collect();
-    let each = bends.each.iter().zip(&pieces).enumerate();
-    let each: Vec<_> = each.map(|(k, (b, pieces))| with_shared_edges(drawing, b, (part_bends, k), pieces)).collect();
-    let (each, contours): (Vec<Bend<'_>>, Vec<_>) = each.into_iter().unzip();
-    let known: Vec<_> = each.iter().enumerate().map(|(k, b)| known_shapes(drawing, b, part_bends, k)).collect();
+    let shared = bends.each.iter().zip(&pieces).enumerate();
+    let shared = shared.map(|(k, (b, pieces))| with_shared_edges(drawing, b, (part_bends, k), pieces));
+    let (bends_of, contours): (Vec<Bend<'_>>, Vec<_>) = shared.unzip();
+    let known: Vec<_> = bends_of.iter().enumerate().map(|(k, b)| known_shapes(drawing, b, part_bends, k)).collect();
     let gradients = if bends.options.paints_gradients() { parts.iter().map(count_gradients).sum() } else { 0 };
     let hairline = drawing.millimetre().map_or(0.0, |mm| HAIRLINE * mm);
     let warp = |i: usize| {
-        let k = part_bends[i].filter(|&k| !each[k].is_identity())?;
-        let (p, Bend { map, options }) = (&parts[i], &each[k]);
-        let one = united.outlines.get(&i);
+        let k = part_bends[i].filter(|&k| !bends_of[k].is_identity())?;
+        let (p, Bend { map, options }) = (&parts[i], &bends_of[k]);
+        let union = united.outlines.get(&i);
         let unites = matches!(options.edit, Some(Edit::Unite { .. }));
-        if unites && one.is_none() || options.edit.is_some_and(|e| !e.concerns(p, &drawing.source)) {
+        if (unites && union.is_none()) || options.edit.is_some_and(|e| !e.concerns(p, &drawing.source)) {
             return None;
         }
         let gathered = map.prefers_batches().then(|| Gathered::new(*map));
@@ -134,16 +132,16 @@ fn warp_parts(
         let context = PartContext { map, options, known: &known[k], drawing, to_px: scene.to_px, gradients, hairline };
         let write = frame_in_result(scene, slots, p.slot, p.frame);
         (is_invertible(p.frame) && is_invertible(write)).then(|| {
-            let outline = match one {
-                Some(one) => (one.clone(), &[][..]),
+            let outline = match union {
+                Some(union) => (union.clone(), &[][..]),
                 None => (shapes[i].outline.clone(), &contours[k][i][..]),
             };
             part::warp(&PartTask::new(p, outline, write, &context, &pieces[k][i]).without_hidden()?)
         })
     };
-    let copies = each.iter().map(|b| b.options.copies.len()).max().unwrap_or_default();
+    let copies = bends_of.iter().map(|b| b.options.copies.len()).max().unwrap_or_default();
     let segments = || -> usize { parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * copies.max(1) };
-    if bends.is_identity() || segments() < WORTH_IT {
+    if bends.is_identity() || segments() < WORTH_THREADS {
         (0..parts.len()).map(warp).collect()
     } else {
         map_parallel(parts.len(), |i| warp(i).map(|warped| warped.map(WarpedPart::with_data)))
@@ -238,13 +236,12 @@ fn warn(
     }
     for (k, bend) in bends.each.iter().enumerate() {
         let Some(edit) = edit_of(drawing, bend, part_bends, k) else { continue };
-        let stay = |i: &usize| part_bends[*i] == Some(k) && has_lines_that_stay(edit, &drawing.scene().parts[*i]);
-        let mut names: Vec<String> =
-            (0..part_bends.len()).filter(stay).map(|i| drawing.shapes()[i].id.clone()).collect();
+        let stays = |i: &usize| part_bends[*i] == Some(k) && has_lines_that_stay(edit, &drawing.scene().parts[*i]);
+        let mut names: Vec<_> = (0..part_bends.len()).filter(stays).map(|i| drawing.shapes()[i].id.clone()).collect();
         names.dedup();
         if !names.is_empty() {
-            out.warnings
-                .push(Warning::Note { text: "open lines stay where they are (--lines moves them, too)", names });
+            let text = "open lines stay where they are (--lines moves them, too)";
+            out.warnings.push(Warning::Note { text, names });
         }
     }
     let of_text = |b: &&Bitmap| b.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");

@@ -84,7 +84,7 @@ pub(crate) fn fit_copies(
     result: Rect,
 ) -> Option<PaintFit> {
     /// Largest relative residual of a useful fit.
-    const LOST: f64 = 0.25;
+    const MAX_RESIDUAL: f64 = 0.25;
     let back = read.inverse();
     let Some(whole) = copies.iter().map(|m| (back * *m * read).transform_rect_bbox(area)).reduce(|a, b| a.union(b))
     else {
@@ -97,9 +97,8 @@ pub(crate) fn fit_copies(
             * Affine::scale_non_uniform(scale(area.width(), all.width()), scale(area.height(), all.height()))
             * Affine::translate(-area.origin().to_vec2())
     };
-    let over = fit(whole, read, write, map).filter(|f| f.residual <= LOST);
-    Some(match over {
-        Some(over) => PaintFit { affine: over.affine * onto(whole), ..over },
+    Some(match fit(whole, read, write, map).filter(|f| f.residual <= MAX_RESIDUAL) {
+        Some(fit) => PaintFit { affine: fit.affine * onto(whole), ..fit },
         None => PaintFit { affine: onto(result), residual: 1.0, miss: f64::INFINITY },
     })
 }
@@ -164,12 +163,14 @@ pub(crate) fn unmoved(scene: &Scene) -> Vec<PlacedSlot> {
 pub(crate) fn distance_from_translation(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> f64 {
     let linear = |a: Affine, v: Vec2| (a * v.to_point()).to_vec2() - a.translation();
     let back = write.inverse();
-    let off = |p: Point| {
+    // The Frobenius norm of the difference; infinite where the map is not defined.
+    let distance = |p: Point| {
         let jet = map.jet(read * p);
-        let moved = |v: Vec2| (linear(back, jet.push(linear(read, v))) - v).hypot2();
-        (moved(Vec2::new(1.0, 0.0)) + moved(Vec2::new(0.0, 1.0))).sqrt()
+        let change = |v: Vec2| (linear(back, jet.push(linear(read, v))) - v).hypot2();
+        let distance = (change(Vec2::new(1.0, 0.0)) + change(Vec2::new(0.0, 1.0))).sqrt();
+        if distance.is_finite() { distance } else { f64::INFINITY }
     };
-    grid(area).map(off).map(|off| if off.is_finite() { off } else { f64::INFINITY }).fold(0.0, f64::max)
+    grid(area).map(distance).fold(0.0, f64::max)
 }
 
 /// Index of the bend of all parts in a slot; `None` if they have several.

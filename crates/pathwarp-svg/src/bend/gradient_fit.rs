@@ -5,7 +5,7 @@
 //! given level curves, the piecewise linear profile nearest to the samples follows by linear least squares, and the Levenberg–Marquardt
 //! method moves the curves so that the remaining residuals shrink.
 
-use super::shading::{GradientShape, Shading, Stop, premultiplied};
+use super::shading::{GradientShape, SAME_OFFSET, Shading, Stop, premultiplied};
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use usvg::SpreadMethod;
 
@@ -14,30 +14,26 @@ pub(super) type Moved = (Point, Point);
 
 /// Number of samples in the search for level curves.
 const SEARCH_SAMPLES: usize = 256;
-/// Number of cells of the profile during the search.
+/// Number of cells, that is, intervals of the piecewise linear profile, during the search.
 const CELLS: usize = 10;
 /// Numbers of cells of the profiles that are tried as gradients.
 const TRIED_CELLS: [usize; 5] = [1, 2, 4, 8, 16];
 /// Most periods of a gradient that repeats.
 const MAX_PERIODS: f64 = 8.0;
-/// Stops closer than this coincide; usvg moves them apart by a rounding error.
-const SAME: f64 = 1e-4;
 /// Margin on either side of the samples' range, as a fraction of it, for points between and around the samples.
-const AROUND: f64 = 0.03;
-
+const MARGIN: f64 = 0.03;
 /// Largest offset at which the colours of a radial gradient may begin, since some renderers hold 256 colours from offset 0 on.
-const NARROWEST: f64 = 0.9;
-
+const MAX_FIRST_OFFSET: f64 = 0.9;
 /// Work of the search, in evaluations of a map.
-pub(super) const SEARCH: f64 = 60e3;
+pub(super) const SEARCH_WORK: f64 = 60e3;
 
 /// The SVG gradient that looks like the bent one, if any does: the plainest good one, or else the best. `fitted` is the gradient under an
-/// affine fit, from which a search starts. `off` measures how far a gradient's look is off; at most 1 is acceptable.
+/// affine fit, from which a search starts. `error` measures the visible error of a gradient; at most 1 is acceptable.
 pub(super) fn nearest(
     shading: &Shading,
     fitted: Option<&Shading>,
     moved: &[Moved],
-    off: impl Fn(&Shading) -> f64,
+    error: impl Fn(&Shading) -> f64,
 ) -> Option<Shading> {
     /// An error at which more stops are not worth their bytes.
     const GOOD: f64 = 0.4;
@@ -45,26 +41,28 @@ pub(super) fn nearest(
     let samples = Samples::new(shading, &ramp, moved)?;
     let few = samples.thinned(SEARCH_SAMPLES);
     let mut best: Option<(f64, Shading)> = None;
-    let mut is_good = |levels: Levels| {
+    // Tries gradients with these level curves, until one is good.
+    let mut finds_good = |levels: Levels| {
         for gradient in samples.gradients(&ramp, levels) {
-            let off = off(&gradient);
-            if off <= best.as_ref().map_or(1.0, |b| b.0) {
-                best = Some((off, gradient));
+            let error = error(&gradient);
+            if error <= best.as_ref().map_or(1.0, |b| b.0) {
+                best = Some((error, gradient));
             }
-            if off <= GOOD {
+            if error <= GOOD {
                 return true;
             }
         }
         false
     };
-    if !is_good(few.refined(Levels::Lines(few.steepest()))) {
-        let centre = few.refined(Levels::Circles(few.coarse_centre())).parameters();
-        if !is_good(Levels::Circles([centre[0], centre[1]])) {
-            let around = [centre[0], centre[1], 0.0, 0.0, 0.0, 0.0];
-            let starts = [Some(around), fitted.and_then(|f| f.ellipses(samples.out))];
+    if !finds_good(few.refined(Levels::Lines(few.steepest()))) {
+        let circles = few.refined(Levels::Circles(few.coarse_centre()));
+        if !finds_good(circles) {
+            let centre = circles.parameters();
+            let concentric = [centre[0], centre[1], 0.0, 0.0, 0.0, 0.0];
+            let starts = [Some(concentric), fitted.and_then(|f| f.ellipses(samples.to_user))];
             let found = starts.into_iter().flatten().map(|start| few.refined(Levels::Ellipses(start)));
             let rated = found.map(|e| (few.residuals(e).1, e)).min_by(|a, b| a.0.total_cmp(&b.0));
-            rated.map(|(_, ellipses)| is_good(ellipses));
+            rated.map(|(_, ellipses)| finds_good(ellipses));
         }
     }
     best.map(|b| b.1)
@@ -79,9 +77,8 @@ struct Ramp {
 
 impl Ramp {
     fn new(shading: &Shading, moved: &[Moved]) -> Option<Self> {
-        let along = |p: &Moved| shading.along_one(p.0);
-        let all = moved.iter().map(along).filter(|t| t.is_finite());
-        let (from, to) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
+        let parameters = moved.iter().map(|p| shading.parameter_at(p.0)).filter(|t| t.is_finite());
+        let (from, to) = range(parameters);
         let stops = match shading.spread {
             SpreadMethod::Pad => padded(&shading.stops, from, to),
             SpreadMethod::Repeat | SpreadMethod::Reflect => {
@@ -89,8 +86,7 @@ impl Ramp {
                 if last - first > MAX_PERIODS {
                     return None;
                 }
-                let periods = (0..(last - first) as usize).map(|n| first + n as f64);
-                periods.flat_map(|n| period(shading, n)).collect()
+                (0..(last - first) as usize).flat_map(|n| period(shading, first + n as f64)).collect()
             }
         };
         let change = |pair: &[Stop]| {
@@ -106,9 +102,9 @@ impl Ramp {
         let least = 0.2 * total / length;
         let mut scale = vec![0.0];
         for pair in stops.windows(2) {
-            let apart = pair[1].offset - pair[0].offset;
-            let grown = if apart <= SAME { 0.0 } else { change(pair) + least * apart };
-            scale.push(scale[scale.len() - 1] + grown);
+            let distance = pair[1].offset - pair[0].offset;
+            let growth = if distance <= SAME_OFFSET { 0.0 } else { change(pair) + least * distance };
+            scale.push(scale[scale.len() - 1] + growth);
         }
         Some(Self { stops, scale })
     }
@@ -120,7 +116,7 @@ impl Ramp {
         let last = self.stops.len() - 1;
         let next = self.stops.partition_point(|s| s.offset <= t).clamp(1, last);
         let [from, to] = [self.stops[next - 1].offset, self.stops[next].offset];
-        let rate = if to - from <= SAME { 0.0 } else { (self.scale[next] - self.scale[next - 1]) / (to - from) };
+        let rate = if to - from <= SAME_OFFSET { 0.0 } else { (self.scale[next] - self.scale[next - 1]) / (to - from) };
         let end = self.scale[last];
         (self.scale[next - 1] + (t - from) * rate).clamp(-BEYOND * end, (1.0 + BEYOND) * end)
     }
@@ -141,8 +137,8 @@ impl Ramp {
         for (k, pair) in profile.windows(2).enumerate() {
             let (from, to) = (pair[0], pair[1]);
             out.push(Stop { offset: k as f64 / cells, color: self.color_at(from) });
-            let inside = |i: &usize| (self.scale[*i] - from) * (self.scale[*i] - to) < 0.0;
-            let mut crossed: Vec<usize> = (0..self.scale.len()).filter(inside).collect();
+            let is_between = |i: &usize| (self.scale[*i] - from) * (self.scale[*i] - to) < 0.0;
+            let mut crossed: Vec<usize> = (0..self.scale.len()).filter(is_between).collect();
             if to < from {
                 crossed.reverse();
             }
@@ -156,7 +152,8 @@ impl Ramp {
 
 /// The stops, with another at either end of the range where colours jump at the first or the last stop.
 fn padded(stops: &[Stop], from: f64, to: f64) -> Vec<Stop> {
-    let jumps = |a: Option<&Stop>, b: Option<&Stop>| a.zip(b).is_none_or(|(a, b)| (b.offset - a.offset).abs() <= SAME);
+    let jumps =
+        |a: Option<&Stop>, b: Option<&Stop>| a.zip(b).is_none_or(|(a, b)| (b.offset - a.offset).abs() <= SAME_OFFSET);
     let end = |s: Option<&Stop>, at: f64| s.map(|s| Stop { offset: at, ..*s });
     let (first, last) = (stops.first(), stops.last());
     let before = end(first, from).filter(|b| jumps(first, stops.get(1)) && first.is_some_and(|f| b.offset < f.offset));
@@ -185,19 +182,19 @@ fn pruned(stops: &[Stop]) -> Vec<Stop> {
     const HIDDEN: f64 = 0.3 / 255.0;
     let mut out: Vec<Stop> = Vec::with_capacity(stops.len());
     // The stops dropped since the last one that is kept.
-    let mut between: Vec<Stop> = Vec::new();
+    let mut dropped: Vec<Stop> = Vec::new();
     for (i, stop) in stops.iter().enumerate() {
-        let follows = |s: &Stop, a: &Stop, b: &Stop| {
+        let is_interpolated = |s: &Stop, a: &Stop, b: &Stop| {
             let share = if b.offset > a.offset { (s.offset - a.offset) / (b.offset - a.offset) } else { 2.0 };
             (0..4).all(|k| (a.color[k] + share * (b.color[k] - a.color[k]) - s.color[k]).abs() <= HIDDEN)
         };
         if let (Some(a), Some(b)) = (out.last(), stops.get(i + 1)) {
-            between.push(*stop);
-            if between.iter().all(|s| follows(s, a, b)) {
+            dropped.push(*stop);
+            if dropped.iter().all(|s| is_interpolated(s, a, b)) {
                 continue;
             }
         }
-        between.clear();
+        dropped.clear();
         out.push(*stop);
     }
     out
@@ -235,14 +232,14 @@ impl Levels {
     /// The focus, the matrix, and the shift of the centres for each unit of the circles' radius, of the parameters of [`Self::Ellipses`].
     fn cone(parameters: [f64; 6]) -> (Point, Affine, Vec2) {
         /// Largest shift. From 1 on, the circles would no longer be nested.
-        const FARTHEST: f64 = 0.9;
+        const MAX_SHIFT: f64 = 0.9;
         let [fx, fy, p, r, ex, ey] = parameters;
-        // The matrix exponential in closed form.
+        // The matrix exponential in closed form: cosh m plus the logarithm times sinh m / m, where m² = p² + r².
         let m = p.hypot(r);
-        let (even, odd) = (m.cosh(), if m > 1e-9 { m.sinh() / m } else { 1.0 });
+        let (cosh, ratio) = (m.cosh(), if m > 1e-9 { m.sinh() / m } else { 1.0 });
         let shift = Vec2::new(ex, ey);
-        let shift = shift * (FARTHEST / (1.0 + shift.hypot2()).sqrt());
-        (Point::new(fx, fy), Affine::new([even + odd * p, odd * r, odd * r, even - odd * p, 0.0, 0.0]), shift)
+        let shift = shift * (MAX_SHIFT / (1.0 + shift.hypot2()).sqrt());
+        (Point::new(fx, fy), Affine::new([cosh + ratio * p, ratio * r, ratio * r, cosh - ratio * p, 0.0, 0.0]), shift)
     }
 
     /// The parameter of the level curve through each point.
@@ -254,11 +251,11 @@ impl Levels {
             }
             Self::Circles([x, y]) => points.iter().map(|q| q.distance(Point::new(x, y))).collect(),
             Self::Ellipses(p) => {
-                let (focus, round, shift) = Self::cone(p);
+                let (focus, to_circles, shift) = Self::cone(p);
                 // The positive root s of |y − s·shift| = s.
                 let a = 1.0 - shift.hypot2();
                 let radius = |q: &Point| {
-                    let y = (round * (*q - focus).to_point()).to_vec2();
+                    let y = (to_circles * (*q - focus).to_point()).to_vec2();
                     let b = y.dot(shift);
                     ((b * b + a * y.hypot2()).sqrt() - b) / a
                 };
@@ -267,32 +264,32 @@ impl Levels {
         }
     }
 
-    /// The gradient whose offset 1 is at the parameter `to`, and whose offset 0 is at `from` for lines and at the focus otherwise. `out`
-    /// leads from the samples' coordinates to user space.
-    fn shading(self, (from, to): (f64, f64), out: Affine, stops: Vec<Stop>) -> Shading {
-        let scale = out.determinant().abs().sqrt();
-        let (kind, placed) = match self {
+    /// The gradient whose offset 1 is at the parameter `to`, and whose offset 0 is at `from` for lines and at the focus otherwise.
+    /// `to_user` leads from the samples' coordinates to user space.
+    fn shading(self, (from, to): (f64, f64), to_user: Affine, stops: Vec<Stop>) -> Shading {
+        let scale = to_user.determinant().abs().sqrt();
+        let (kind, transform) = match self {
             Self::Lines(angle) => {
                 let direction = Vec2::from_angle(angle);
-                let fine = rounder((to - from) * scale);
-                let [a, b] = [from, to].map(|s| out * (direction * s).to_point());
-                let [a, b] = [a, b].map(|p| Point::new(fine(p.x), fine(p.y)));
+                let round = rounder((to - from) * scale);
+                let [a, b] = [from, to].map(|s| to_user * (direction * s).to_point());
+                let [a, b] = [a, b].map(|p| Point::new(round(p.x), round(p.y)));
                 (GradientShape::Linear { from: a, slope: (b - a) / (b - a).hypot2() }, Affine::IDENTITY)
             }
             Self::Circles([x, y]) => {
-                let fine = rounder(to * scale);
-                let (centre, radius) = (out * Point::new(x, y), fine(to * scale));
-                let centre = Point::new(fine(centre.x), fine(centre.y));
+                let round = rounder(to * scale);
+                let (centre, radius) = (to_user * Point::new(x, y), round(to * scale));
+                let centre = Point::new(round(centre.x), round(centre.y));
                 (GradientShape::Radial { centre, radius, focus: centre, focal_radius: 0.0 }, Affine::IDENTITY)
             }
             Self::Ellipses(p) => {
-                let (focus, round, shift) = Self::cone(p);
-                let placed = out * Affine::translate(focus.to_vec2()) * round.inverse() * Affine::scale(to);
+                let (focus, to_circles, shift) = Self::cone(p);
+                let transform = to_user * Affine::translate(focus.to_vec2()) * to_circles.inverse() * Affine::scale(to);
                 let centre = shift.to_point();
-                (GradientShape::Radial { centre, radius: 1.0, focus: Point::ORIGIN, focal_radius: 0.0 }, placed)
+                (GradientShape::Radial { centre, radius: 1.0, focus: Point::ORIGIN, focal_radius: 0.0 }, transform)
             }
         };
-        Shading { inside: placed.inverse(), kind, stops, spread: SpreadMethod::Pad }
+        Shading { to_gradient: transform.inverse(), kind, stops, spread: SpreadMethod::Pad }
     }
 }
 
@@ -303,18 +300,18 @@ fn rounder(length: f64) -> impl Fn(f64) -> f64 {
 }
 
 impl Shading {
-    /// The level curves of a radial gradient with the centre moved to the focus, as parameters of [`Levels::Ellipses`]. `out` leads from
-    /// the samples' coordinates to user space.
-    fn ellipses(&self, out: Affine) -> Option<[f64; 6]> {
+    /// The level curves of a radial gradient with the centre moved to the focus, as parameters of [`Levels::Ellipses`]. `to_user` leads
+    /// from the samples' coordinates to user space.
+    fn ellipses(&self, to_user: Affine) -> Option<[f64; 6]> {
         let GradientShape::Radial { focus, .. } = self.kind else { return None };
-        let to = self.inside * out;
-        let [a, b, c, d, ..] = to.as_coeffs();
+        let to_gradient = self.to_gradient * to_user;
+        let [a, b, c, d, ..] = to_gradient.as_coeffs();
         // The square of the symmetric matrix of determinant 1; half of the square's logarithm is the matrix's.
-        let unit = to.determinant().abs();
+        let unit = to_gradient.determinant().abs();
         let [xx, xy, yy] = [a * a + b * b, a * c + b * d, c * c + d * d].map(|v| v / unit);
         let m = (0.5 * (xx + yy)).max(1.0).acosh();
         let half = if m > 1e-6 { 0.5 * m / m.sinh() } else { 0.5 };
-        let focus = to.inverse() * focus;
+        let focus = to_gradient.inverse() * focus;
         let all = [focus.x, focus.y, half * 0.5 * (xx - yy), half * xy, 0.0, 0.0];
         all.iter().all(|v| v.is_finite()).then_some(all)
     }
@@ -325,7 +322,7 @@ struct Samples {
     points: Vec<Point>,
     values: Vec<f64>,
     /// Leads to the user space of the result.
-    out: Affine,
+    to_user: Affine,
 }
 
 impl Samples {
@@ -336,11 +333,11 @@ impl Samples {
         if moved.len() < 3 * CELLS || !(spread > 0.0 && spread.is_finite()) {
             return None;
         }
-        let out = Affine::translate(mean) * Affine::scale(spread);
-        let into = out.inverse();
-        let values: Vec<f64> = moved.iter().map(|m| ramp.scale_at(shading.along_one(m.0))).collect();
-        let points = moved.iter().map(|m| into * m.1).collect();
-        values.iter().all(|v| v.is_finite()).then_some(Self { points, values, out })
+        let to_user = Affine::translate(mean) * Affine::scale(spread);
+        let from_user = to_user.inverse();
+        let values: Vec<f64> = moved.iter().map(|m| ramp.scale_at(shading.parameter_at(m.0))).collect();
+        let points = moved.iter().map(|m| from_user * m.1).collect();
+        values.iter().all(|v| v.is_finite()).then_some(Self { points, values, to_user })
     }
 
     /// At most `most` of the samples, evenly taken.
@@ -349,7 +346,7 @@ impl Samples {
         Self {
             points: self.points.iter().copied().step_by(step).collect(),
             values: self.values.iter().copied().step_by(step).collect(),
-            out: self.out,
+            to_user: self.to_user,
         }
     }
 
@@ -369,21 +366,21 @@ impl Samples {
 
     /// The best centre for circles among points on rings around the samples, near and far.
     fn coarse_centre(&self) -> [f64; 2] {
-        const AROUND: u32 = 16;
-        const FAR: [f64; 5] = [0.0, 0.7, 1.5, 3.0, 8.0];
+        const PER_RING: u32 = 16;
+        const RADII: [f64; 5] = [0.0, 0.7, 1.5, 3.0, 8.0];
         let on_ring = |r: f64, k: u32| {
-            let p = Vec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(AROUND)) * r;
+            let p = Vec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(PER_RING)) * r;
             [p.x, p.y]
         };
-        let all = FAR.into_iter().flat_map(|r| (0..AROUND).map(move |k| on_ring(r, k)));
-        let rated = all.map(|c| (self.residuals(Levels::Circles(c)).1, c));
+        let centres = RADII.into_iter().flat_map(|r| (0..PER_RING).map(move |k| on_ring(r, k)));
+        let rated = centres.map(|c| (self.residuals(Levels::Circles(c)).1, c));
         rated.min_by(|a, b| a.0.total_cmp(&b.0)).map_or([0.0; 2], |b| b.1)
     }
 
     /// The residuals of the best profile along these level curves, and the sum of their squares.
     fn residuals(&self, levels: Levels) -> (Vec<f64>, f64) {
         let along = levels.parameters_at(&self.points);
-        let range = range(&along);
+        let range = range(along.iter().copied());
         let profile = fit_profile(&along, &self.values, range, CELLS);
         let residuals = along.iter().zip(&self.values).map(|(s, v)| v - profile_at(&profile, range, *s));
         let residuals: Vec<f64> = residuals.collect();
@@ -394,25 +391,26 @@ impl Samples {
     /// The level curves near `start` and of its kind whose residuals are least, by the Levenberg–Marquardt method.
     fn refined(&self, start: Levels) -> Levels {
         const ROUNDS: usize = 24;
+        /// Step of the finite differences that give the derivatives.
         const STEP: f64 = 1e-5;
         let (mut levels, mut damping) = (start, 1e-3);
         let (mut residuals, mut sum) = self.residuals(levels);
         for _ in 0..ROUNDS {
             let p = levels.parameters();
-            let column = |k: usize| {
-                let mut moved = p.clone();
-                moved[k] += STEP;
-                let (there, _) = self.residuals(levels.with_parameters(&moved));
+            let derivative = |k: usize| {
+                let mut shifted = p.clone();
+                shifted[k] += STEP;
+                let (there, _) = self.residuals(levels.with_parameters(&shifted));
                 there.iter().zip(&residuals).map(|(a, b)| (a - b) / STEP).collect::<Vec<f64>>()
             };
-            let columns: Vec<Vec<f64>> = (0..p.len()).map(column).collect();
+            let columns: Vec<Vec<f64>> = (0..p.len()).map(derivative).collect();
             let before = sum;
             for _ in 0..6 {
                 let Some(step) = damped_step(&columns, &residuals, damping) else { break };
                 let next = levels.with_parameters(&p.iter().zip(&step).map(|(p, s)| p - s).collect::<Vec<f64>>());
-                let (there, less) = self.residuals(next);
-                if less < sum {
-                    (levels, residuals, sum, damping) = (next, there, less, damping * 0.2);
+                let (next_residuals, next_sum) = self.residuals(next);
+                if next_sum < sum {
+                    (levels, residuals, sum, damping) = (next, next_residuals, next_sum, damping * 0.2);
                     break;
                 }
                 damping *= 5.0;
@@ -427,31 +425,31 @@ impl Samples {
     /// The gradients with these level curves, from few stops to many.
     fn gradients(&self, ramp: &Ramp, levels: Levels) -> impl Iterator<Item = Shading> {
         let along = levels.parameters_at(&self.points);
-        let (from, to) = range(&along);
-        let around = AROUND * (to - from);
-        let range = (from - around, to + around);
+        let (from, to) = range(along.iter().copied());
+        let margin = MARGIN * (to - from);
+        let range = (from - margin, to + margin);
         let is_radial = !matches!(levels, Levels::Lines(_));
         let range = if is_radial { (range.0.max(0.0), range.1) } else { range };
-        let tried = if is_radial && range.0 > NARROWEST * range.1 { &[][..] } else { &TRIED_CELLS };
+        let tried = if is_radial && range.0 > MAX_FIRST_OFFSET * range.1 { &[][..] } else { &TRIED_CELLS };
         tried.iter().map(move |&cells| {
             let profile = monotone(fit_profile(&along, &self.values, range, cells));
             let mut stops = ramp.stops(&profile);
             if is_radial {
                 stops.iter_mut().for_each(|s| s.offset = (range.0 + s.offset * (range.1 - range.0)) / range.1);
             }
-            levels.shading(range, self.out, stops)
+            levels.shading(range, self.to_user, stops)
         })
     }
 }
 
 /// The least and the largest of some values.
-fn range(all: &[f64]) -> (f64, f64) {
-    all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(*s), b.max(*s)))
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(s), b.max(s)))
 }
 
 /// The index of the cell that holds the parameter `s` in an evenly divided range, and the parameter within that cell, 0 to 1.
 fn cell(s: f64, (from, to): (f64, f64), cells: usize) -> (usize, f64) {
-    let u = ((s - from) / (to - from) * cells as f64).clamp(0.0, cells as f64);
+    let u = (((s - from) / (to - from)) * cells as f64).clamp(0.0, cells as f64);
     let k = (u as usize).min(cells - 1);
     (k, u - k as f64)
 }
@@ -498,10 +496,10 @@ fn fit_profile(along: &[f64], values: &[f64], range: (f64, f64), cells: usize) -
 fn monotone(mut profile: Vec<f64>) -> Vec<f64> {
     let falls = profile[profile.len() - 1] < profile[0];
     let sign = if falls { -1.0 } else { 1.0 };
-    let mut most = f64::NEG_INFINITY;
+    let mut extreme = f64::NEG_INFINITY;
     for v in &mut profile {
-        most = most.max(sign * *v);
-        *v = sign * most;
+        extreme = extreme.max(sign * *v);
+        *v = sign * extreme;
     }
     profile
 }
@@ -589,7 +587,7 @@ mod tests {
             let gradient = format!("<linearGradient id='a' {geometry}>{stops}</linearGradient>");
             let (found, worst) = fitted(&gradient, ring).unwrap();
             let GradientShape::Radial { centre, .. } = found.kind else { panic!("{gradient}: {found:?}") };
-            let centre = found.inside.inverse() * centre;
+            let centre = found.to_gradient.inverse() * centre;
             assert!(centre.distance(Point::new(50.0, 400.0)) < most, "{gradient}: {centre}");
             assert!(worst < 8.5 / 255.0, "{gradient}: {}", worst * 255.0);
         }

@@ -1,7 +1,7 @@
 //! Replaces gradients that would look wrong under an affine fit: by another gradient, or else by a picture.
 
 use super::fits::PaintFit;
-use super::gradient_fit::{Moved, SEARCH, nearest};
+use super::gradient_fit::{Moved, SEARCH_WORK, nearest};
 use super::meshes;
 use super::options::Gradients;
 use super::pictures::{BentImage, GradientRequest, PictureError, SeenColor};
@@ -21,7 +21,7 @@ const NOTICEABLE: f64 = 8.0 / 255.0;
 /// Fraction of the shape on which a difference must be noticeable to count. Edges between hard stops that shift a little cover less.
 const NOTICEABLE_SHARE: f64 = 0.01;
 /// Bound on the ratio of an affine fit's largest error over a shape to its largest error at the samples.
-const BETWEEN: f64 = 1.25;
+const SAMPLING_FACTOR: f64 = 1.25;
 
 /// A gradient that an affine fit would show wrong.
 pub(super) enum BentGradient {
@@ -45,8 +45,11 @@ pub(super) struct PaintedGradient {
     shading: Shading,
     /// The box to paint, in the part's user space.
     area: Rect,
+    /// Exact colours at points spread over the shape.
     seen: Vec<SeenColor>,
+    /// `true` if no difference may be visible; `false` if none may be noticeable.
     strict: bool,
+    /// `true` if colours jump.
     sharp: bool,
 }
 
@@ -74,9 +77,9 @@ impl BentGradient {
         let width = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get()));
         let opacity = fill.map(usvg::Fill::opacity).or(p.stroke.as_ref().map(usvg::Stroke::opacity));
         let opacity = opacity.map_or(1.0, |o| f64::from(o.get()));
-        // A bound on the colour's error under the fit.
-        let off = |f: PaintFit| opacity * shading.steepest() * f.miss * stretch(f.affine.inverse()) * BETWEEN;
-        if fit.is_some_and(|f| off(f) <= least) {
+        let error_bound =
+            |f: PaintFit| opacity * shading.steepest() * f.miss * stretch(f.affine.inverse()) * SAMPLING_FACTOR;
+        if fit.is_some_and(|f| error_bound(f) <= least) {
             return None;
         }
         let points = match fill {
@@ -86,49 +89,38 @@ impl BentGradient {
         let moved = with_images(t, &points);
         let color = |(p, at): &Moved| SeenColor { at: *at, color: shading.premultiplied(*p) };
         let seen: Vec<SeenColor> = moved.iter().map(color).collect();
-        let look = Look { opacity, share };
         let fitted = fit.map(|f| shading.transformed(f.affine));
-        if fitted.as_ref().is_some_and(|fitted| look.off(fitted, &seen) <= least) {
+        if fitted.as_ref().is_some_and(|fitted| opacity * largest_difference(fitted, &seen, share) <= least) {
             return None;
         }
         // An edge between hard stops must lie right, so a gradient with one is accepted only if it is right everywhere.
         let sharp = shading.jumps(points.iter().copied(), NOTICEABLE);
-        let look = Look { share: if sharp { 0.0 } else { share }, ..look };
-        let near = || nearest(&shading, fitted.as_ref(), &moved, |s| look.off(s, &seen) / least);
-        if t.options().refit.budget.spend(SEARCH).is_ok()
-            && let Some(near) = near()
+        let share = if sharp { 0.0 } else { share };
+        let error = |s: &Shading| opacity * largest_difference(s, &seen, share) / least;
+        if t.options().refit.budget.spend(SEARCH_WORK).is_ok()
+            && let Some(near) = nearest(&shading, fitted.as_ref(), &moved, error)
         {
             return Some(Self::Near(NewGradient::Plain(near)));
         }
         if !pictured {
             return None;
         }
-        let reach = if fill.is_some() { 0.0 } else { 0.5 * width };
-        let area = p.local.bounding_box().unwrap_or_default().inflate(reach, reach);
+        let half_width = if fill.is_some() { 0.0 } else { 0.5 * width };
+        let area = p.local.bounding_box().unwrap_or_default().inflate(half_width, half_width);
         Some(Self::Picture(PaintedGradient { shading, area, seen, strict, sharp }))
     }
 }
 
-/// Measures how far a gradient's look is off.
-#[derive(Clone, Copy)]
-struct Look {
-    opacity: f64,
-    /// The fraction of points at which it may have any colours.
-    share: f64,
-}
-
-impl Look {
-    /// The largest difference from the colours to be seen, except at the given fraction of points.
-    fn off(self, shading: &Shading, seen: &[SeenColor]) -> f64 {
-        let off = |s: &SeenColor| {
-            let found = shading.premultiplied(s.at);
-            s.color.iter().zip(found).map(|(wanted, f)| (wanted - f).abs() * self.opacity).fold(0.0, f64::max)
-        };
-        let mut all: Vec<f64> = seen.iter().map(off).collect();
-        all.sort_by(f64::total_cmp);
-        let counted = all.len() - (self.share * all.len() as f64) as usize;
-        counted.checked_sub(1).map_or(0.0, |last| all[last])
-    }
+/// The largest difference of a gradient from the exact colours, except at the fraction `share` of points.
+fn largest_difference(shading: &Shading, seen: &[SeenColor], share: f64) -> f64 {
+    let difference = |s: &SeenColor| {
+        let found = shading.premultiplied(s.at);
+        s.color.iter().zip(found).map(|(wanted, f)| (wanted - f).abs()).fold(0.0, f64::max)
+    };
+    let mut all: Vec<f64> = seen.iter().map(difference).collect();
+    all.sort_by(f64::total_cmp);
+    let counted = all.len() - (share * all.len() as f64) as usize;
+    counted.checked_sub(1).map_or(0.0, |last| all[last])
 }
 
 impl PaintedGradient {
@@ -171,33 +163,38 @@ const POINTS: usize = 610;
 /// Number of lattice points if every point counts, and for thin shapes, which contain few of [`POINTS`].
 const DENSE_POINTS: usize = 6765;
 /// Least number of points inside a shape that suffices to judge a gradient by.
-const FEW: usize = 128;
+const ENOUGH_POINTS: usize = 128;
 /// Number of points along a stroke.
-const ALONG: usize = 377;
+const STROKE_POINTS: usize = 377;
 /// Flattening tolerance, relative to the box.
 const FLATNESS: f64 = 1e-3;
 
 /// Points spread evenly inside an outline. No two share a coordinate, so that bands in any direction contain some.
 pub(super) fn points_inside(outline: &Outline, rule: FillRule, densely: bool) -> Vec<Point> {
     let Some(bounds) = outline.bounding_box() else { return Vec::new() };
-    let lines = lines(outline, bounds);
+    let tolerance = FLATNESS * bounds.width().hypot(bounds.height());
+    // The lines of the flattened outline, with subpaths closed.
+    let mut lines = Vec::new();
+    boundary(outline.to_bez_path(tolerance), tolerance, |a, b| lines.push((a, b)));
     let found = if densely { Vec::new() } else { lattice(&lines, bounds, rule, POINTS) };
-    if found.len() >= FEW { found } else { lattice(&lines, bounds, rule, DENSE_POINTS) }
+    if found.len() >= ENOUGH_POINTS { found } else { lattice(&lines, bounds, rule, DENSE_POINTS) }
 }
 
 /// Points on a stroke of the given width around an outline, without caps and dashes.
 pub(super) fn points_along(outline: &Outline, width: f64) -> Vec<Point> {
     let Some(bounds) = outline.bounding_box() else { return Vec::new() };
-    let path = flattened(outline, bounds);
+    let tolerance = FLATNESS * bounds.width().hypot(bounds.height());
+    let mut path = BezPath::new();
+    kurbo::flatten(outline.to_bez_path(tolerance), tolerance, |e| path.push(e));
     let lengths: Vec<(kurbo::PathSeg, f64)> = path.segments().map(|s| (s, s.arclen(bounds.width()))).collect();
     let total: f64 = lengths.iter().map(|l| l.1).sum();
-    let mut out = Vec::with_capacity(ALONG);
+    let mut out = Vec::with_capacity(STROKE_POINTS);
     let mut before = 0.0;
     for (segment, length) in lengths.iter().filter(|l| l.1 > 0.0) {
         let normal = (segment.end() - segment.start()).turn_90() / *length;
-        while (out.len() as f64 + 0.5) / ALONG as f64 * total < before + length && out.len() < ALONG {
+        while ((out.len() as f64 + 0.5) / STROKE_POINTS as f64) * total < before + length && out.len() < STROKE_POINTS {
             let n = out.len() as f64;
-            let t = ((n + 0.5) / ALONG as f64 * total - before) / length;
+            let t = (((n + 0.5) / STROKE_POINTS as f64) * total - before) / length;
             out.push(segment.eval(t) + normal * width * (golden(n) - 0.5));
         }
         before += length;
@@ -211,32 +208,13 @@ fn golden(n: f64) -> f64 {
     (n * RATIO).fract()
 }
 
-fn flatness(bounds: Rect) -> f64 {
-    FLATNESS * bounds.width().hypot(bounds.height())
-}
-
-fn flattened(outline: &Outline, bounds: Rect) -> BezPath {
-    let tolerance = flatness(bounds);
-    let mut out = BezPath::new();
-    kurbo::flatten(outline.to_bez_path(tolerance), tolerance, |e| out.push(e));
-    out
-}
-
-/// The lines of the flattened outline, with subpaths closed.
-fn lines(outline: &Outline, bounds: Rect) -> Vec<(Point, Point)> {
-    let tolerance = flatness(bounds);
-    let mut out = Vec::new();
-    boundary(outline.to_bez_path(tolerance), tolerance, |a, b| out.push((a, b)));
-    out
-}
-
 /// The points of a Fibonacci lattice of `n` points over a box that lie inside the closed lines. Every line adds to the winding numbers of
 /// the points to its right, which are ordered by y.
 fn lattice(lines: &[(Point, Point)], bounds: Rect, rule: FillRule, n: usize) -> Vec<Point> {
     let size = Vec2::new(bounds.width(), bounds.height());
-    let row = |k: usize| bounds.y0 + size.y * (k as f64 + 0.5) / n as f64;
+    let row = |k: usize| bounds.y0 + (size.y * (k as f64 + 0.5)) / n as f64;
     let point = |k: usize| Point::new(bounds.x0 + size.x * golden(k as f64 + 0.5), row(k));
-    let first_from = |y: f64| (((y - bounds.y0) / size.y * n as f64 - 0.5).ceil().max(0.0) as usize).min(n);
+    let first_from = |y: f64| ((((y - bounds.y0) / size.y) * n as f64 - 0.5).ceil().max(0.0) as usize).min(n);
     let mut windings = vec![0_i32; n];
     for (a, b) in lines.iter().filter(|(a, b)| a.y != b.y) {
         let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
@@ -308,10 +286,10 @@ mod tests {
     fn strokes_are_sampled_along_their_path() {
         let path = Outline::from_svg("M0,0 H100 V50").unwrap();
         let found = points_along(&path, 4.0);
-        assert_eq!(found.len(), ALONG);
+        assert_eq!(found.len(), STROKE_POINTS);
         assert!(found.iter().all(|p| (p.y.abs() <= 2.0 && p.x <= 100.0) || (p.x - 100.0).abs() <= 2.0));
         let down = found.iter().filter(|p| p.y > 2.0).count();
-        assert!((down as f64 / ALONG as f64 - 48.0 / 150.0).abs() < 0.03, "{down}");
+        assert!((down as f64 / STROKE_POINTS as f64 - 48.0 / 150.0).abs() < 0.03, "{down}");
         assert!(points_along(&Outline::from_svg("M5,5").unwrap(), 1.0).is_empty());
     }
 }

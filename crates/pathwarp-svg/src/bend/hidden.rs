@@ -1,7 +1,7 @@
 //! Cuts away the part of a drawing that other parts hide in its image.
 
 use super::task::PartTask;
-use super::united::FINE;
+use super::united::AREA_SHARE;
 use crate::scene::model::PartRole;
 use pathwarp::edit::Area;
 use pathwarp::kurbo::Rect;
@@ -15,7 +15,7 @@ impl PartTask<'_> {
         let Some(hidden) = self.hidden else { return Ok(self) };
         let seen = match self.seen_fill()? {
             Some(fill) if self.part.stroke.is_none() => fill,
-            _ => hidden.lines_outside(&self.outline, FINE * self.finest),
+            _ => hidden.lines_outside(&self.outline, AREA_SHARE * self.finest),
         };
         (self.outline, self.contours) = (Arc::new(seen), Vec::new());
         Ok(self)
@@ -31,7 +31,7 @@ impl PartTask<'_> {
 
     /// Returns an area without its hidden part.
     pub(super) fn seen_area(&self, hidden: &Area, outline: &Outline, even_odd: bool) -> Result<Outline, GeometryError> {
-        let fine = FINE * self.finest;
+        let fine = AREA_SHARE * self.finest;
         Ok(Area::of(outline, even_odd, fine)?.difference(hidden, fine)?.outline().clone())
     }
 }

@@ -4,16 +4,14 @@ use super::bends::Bends;
 use super::options::Edit;
 use super::outcome::{ShapeReport, WarpedDocument};
 use super::path::warp_path;
-use super::visible::Seen;
+use super::united::AREA_SHARE;
+use super::visible::Visible;
 use crate::scene::drawing::Drawing;
 use pathwarp::edit::{Contour, around};
 use pathwarp::engine::decimal::trimmed;
 use pathwarp::kurbo::Rect;
 use pathwarp::map::AffineMap;
 use pathwarp::{Error, Outline};
-
-/// Fraction of the tolerance within which the visible area is found; the rest is for the line.
-const FINE: f64 = 0.1;
 
 /// A line around artwork, in root user space.
 #[derive(Debug)]
@@ -31,17 +29,17 @@ pub(super) fn draw(
     part_bends: &[Option<usize>],
     out: &mut WarpedDocument,
 ) -> Result<Option<Line>, Error> {
-    let wanted = bends.each.iter().enumerate().find_map(|(k, b)| match b.options.edit {
+    let requested = bends.each.iter().enumerate().find_map(|(k, b)| match b.options.edit {
         Some(Edit::Contour(contour)) => Some((k, contour, &b.options)),
         _ => None,
     });
-    let Some((k, contour, options)) = wanted else { return Ok(None) };
+    let Some((k, contour, options)) = requested else { return Ok(None) };
     let parts: Vec<bool> = part_bends.iter().map(|bend| *bend == Some(k)).collect();
     let bitmaps: Vec<bool> =
         drawing.scene().bitmaps.iter().map(|b| b.bends && bends.bend_of(b.owner) == Some(k)).collect();
-    let fine = FINE * options.refit.tolerance;
-    let seen = Seen { drawing, parts: &parts, bitmaps: &bitmaps, painter: options.painter.as_ref(), fine };
-    let area = seen.area().map_err(Error::Geometry)?;
+    let (painter, tolerance) = (options.painter.as_ref(), AREA_SHARE * options.refit.tolerance);
+    let visible = Visible { drawing, parts: &parts, bitmaps: &bitmaps, painter, tolerance };
+    let area = visible.area().map_err(Error::Geometry)?;
     if area.is_empty() {
         return Err(Error::input(&drawing.name, "there is nothing to draw a line around: nothing is visible"));
     }
@@ -53,10 +51,8 @@ pub(super) fn draw(
     let (around, data) = line(contour.by).map_err(Error::Geometry)?;
     let Some(bounds) = bounds(&around.outline) else {
         let by = trimmed(-contour.by, 3);
-        return Err(Error::input(
-            &drawing.name,
-            format!("nothing is left {by} units inside the edge; the artwork is narrower"),
-        ));
+        let why = format!("nothing is left {by} units inside the edge; the artwork is narrower");
+        return Err(Error::input(&drawing.name, why));
     };
     let bleed = options.line.bleed;
     let bled = (bleed > 0.0).then(|| line(contour.by + bleed)).transpose().map_err(Error::Geometry)?;

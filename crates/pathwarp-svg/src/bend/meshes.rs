@@ -10,15 +10,12 @@ use pathwarp::map::{Jet, Map};
 
 /// Limit on the patches that cuts add to a mesh.
 const MAX_PATCHES: usize = 4096;
-
 /// Parameters of a patch at which it is compared with the image.
 const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-
 /// Work of a patch, whose samples are compared and whose sides are computed and written.
-const PATCH: f64 = (SAMPLES.len() * SAMPLES.len()) as f64 + 4.0 * cost::SEGMENT;
-
+const PATCH_WORK: f64 = (SAMPLES.len() * SAMPLES.len()) as f64 + 4.0 * cost::SEGMENT;
 /// Largest difference of bilinear colours from smooth ones: half of a noticeable one.
-const COLOR: f64 = 4.0 / 255.0;
+const COLOR_TOLERANCE: f64 = 4.0 / 255.0;
 
 /// The image of a mesh gradient on a part, in the part's user space as written.
 pub(super) fn bend_mesh(t: &PartTask<'_>, mesh: &MeshGradient) -> Result<MeshGradient, PictureError> {
@@ -39,19 +36,19 @@ fn image(
     let mut grid = Grid { source, u: cuts(source.columns()), v: cuts(source.rows()) };
     loop {
         let patches = grid.columns() * grid.rows();
-        if patches > limit || !spend(patches as f64 * PATCH) {
+        if patches > limit || !spend(patches as f64 * PATCH_WORK) {
             return Err("its mesh would take too many patches".into());
         }
         // Once it is cut, a mesh of smooth colours gets bilinear ones that look alike.
         let cut = patches > source.rows() * source.columns();
         let image = MeshGradient { smooth: source.smooth && !cut, ..grid.image(map) };
-        let Some([u, v]) = grid.coarse(&image, map, tolerance) else {
+        let Some([u, v]) = grid.too_coarse(&image, map, tolerance) else {
             return Err("the map is not defined on all of its mesh".into());
         };
         if !u.contains(&true) && !v.contains(&true) {
             return Ok(image);
         }
-        (grid.u, grid.v) = (halved(&grid.u, &u), halved(&grid.v, &v));
+        (grid.u, grid.v) = (halve(&grid.u, &u), halve(&grid.v, &v));
     }
 }
 
@@ -74,7 +71,8 @@ impl Grid<'_> {
     /// The image, with a Hermite cubic for each side.
     fn image(&self, map: &dyn Map) -> MeshGradient {
         self.source.cut(&self.u, &self.v, |ends| {
-            let points: Vec<Point> = ends.iter().map(|e| e.0).collect(); // The ends of all sides, each with the handle there.
+            // The ends of all sides, each with the handle there.
+            let points: Vec<Point> = ends.iter().map(|e| e.0).collect();
             let mut jets = vec![Jet::UNDEFINED; points.len()];
             map.jets(&points, &mut jets);
             jets.iter().zip(ends).map(|(jet, end)| (jet.p, jet.push(end.1))).collect()
@@ -82,7 +80,7 @@ impl Grid<'_> {
     }
 
     /// For each column and each row of an image, `true` if it is too coarse. Returns `None` where the map is undefined.
-    fn coarse(&self, image: &MeshGradient, map: &dyn Map, tolerance: f64) -> Option<[Vec<bool>; 2]> {
+    fn too_coarse(&self, image: &MeshGradient, map: &dyn Map, tolerance: f64) -> Option<[Vec<bool>; 2]> {
         let lattice = || SAMPLES.iter().flat_map(|y| SAMPLES.iter().map(|x| (*x, *y)));
         let cells = || (0..self.rows()).flat_map(|i| (0..self.columns()).map(move |k| (i, k)));
         let between = |c: &[f64], t: f64| c[0] + t * (c[1] - c[0]);
@@ -97,19 +95,19 @@ impl Grid<'_> {
         let mut images = points.clone();
         map.points(&points, &mut images);
         let (mut columns, mut rows) = (vec![false; self.columns()], vec![false; self.rows()]);
-        for ((i, k), wanted) in cells().zip(images.chunks_exact(SAMPLES.len().pow(2))) {
+        for ((i, k), exact) in cells().zip(images.chunks_exact(SAMPLES.len().pow(2))) {
             let sides = [image.across[i][k], image.down[i][k + 1], image.across[i + 1][k], image.down[i][k]];
             // Largest errors of the sides along u and along v, and inside; 1 is the limit.
             let [mut along_u, mut along_v, mut inside] = [0.0_f64; 3];
-            for ((x, y), wanted) in lattice().zip(wanted) {
-                let mut off = coons(sides, x, y).at.distance(*wanted) / tolerance;
-                if !off.is_finite() {
+            for ((x, y), exact) in lattice().zip(exact) {
+                let mut error = coons(sides, x, y).at.distance(*exact) / tolerance;
+                if !error.is_finite() {
                     return None;
                 }
                 if self.source.smooth && !image.smooth {
                     let [u, v] = in_cell((i, k), (x, y));
                     let colors = [image.color(k as f64 + x, i as f64 + y), self.source.color(u, v)];
-                    off = (0..4).map(|n| (colors[0][n] - colors[1][n]).abs() / COLOR).fold(off, f64::max);
+                    error = (0..4).map(|n| (colors[0][n] - colors[1][n]).abs() / COLOR_TOLERANCE).fold(error, f64::max);
                 }
                 let is_rim = |t: f64| t == 0.0 || t == 1.0;
                 let worst = match (is_rim(x), is_rim(y)) {
@@ -117,11 +115,11 @@ impl Grid<'_> {
                     (true, false) => &mut along_v,
                     (false, false) => &mut inside,
                 };
-                *worst = worst.max(off);
+                *worst = worst.max(error);
             }
-            let both = inside > 1.0 && along_u.max(along_v) <= 1.0;
-            columns[k] |= both || along_u > 1.0;
-            rows[i] |= both || along_v > 1.0;
+            let only_inside = inside > 1.0 && along_u.max(along_v) <= 1.0;
+            columns[k] |= only_inside || along_u > 1.0;
+            rows[i] |= only_inside || along_v > 1.0;
         }
         Some([columns, rows])
     }
@@ -131,11 +129,10 @@ fn cuts(patches: usize) -> Vec<f64> {
     (0..=patches).map(|i| i as f64).collect()
 }
 
-/// The cuts with another one in the middle of each interval that asks for it.
-fn halved(cuts: &[f64], asks: &[bool]) -> Vec<f64> {
-    let between =
-        cuts.windows(2).zip(asks).flat_map(|(c, asks)| [c[0], if *asks { 0.5 * (c[0] + c[1]) } else { c[0] }]);
-    let mut all: Vec<f64> = between.chain(cuts.last().copied()).collect();
-    all.dedup();
+/// The cuts with another one in the middle of each interval that is too coarse.
+fn halve(cuts: &[f64], too_coarse: &[bool]) -> Vec<f64> {
+    let mut all = cuts.to_vec();
+    all.extend(cuts.windows(2).zip(too_coarse).filter(|(_, coarse)| **coarse).map(|(c, _)| 0.5 * (c[0] + c[1])));
+    all.sort_by(f64::total_cmp);
     all
 }

@@ -1,6 +1,7 @@
 //! Options for warping a document.
 
 use super::pictures::{Images, Painter};
+use super::united::AREA_SHARE;
 use crate::scene::model::{Part, PartRole};
 use crate::source::elements::ElementId;
 use crate::source::select::Selection;
@@ -331,11 +332,10 @@ impl Edit {
             Self::Simplify { corner } => refit::simplified(outline, corner, options, contours).map(Some),
             Self::Offset(offset) => moved(outline, &offset, options, contours).map(|m| Some(m.path)),
             Self::Contour(contour) => {
-                let area = Area::of(outline, false, 0.1 * options.tolerance)?;
-                let around = around(&area, &contour, options)?;
-                let path = around.outline.to_bez_path(0.1 * options.tolerance);
+                let tolerance = AREA_SHARE * options.tolerance;
+                let around = around(&Area::of(outline, false, tolerance)?, &contour, options)?;
                 let mut out = RefittedPath::default();
-                (out.path, out.report) = (path, around.report);
+                (out.path, out.report) = (around.outline.to_bez_path(tolerance), around.report);
                 Ok(Some(out))
             }
             Self::Outline | Self::Unite { .. } | Self::Resolve => Ok(None),

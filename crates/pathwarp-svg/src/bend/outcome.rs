@@ -66,14 +66,13 @@ impl ShapeReport {
     /// Reports on a shape whose paints and strokes need no remark.
     #[must_use]
     pub fn new(id: &str, copies: usize, path: PathReport) -> Self {
-        let (paint_residual, stroke_error) = (None, None);
         Self {
             id: id.to_owned(),
             copies,
             path,
-            paint_residual,
+            paint_residual: None,
             pictures: 0,
-            stroke_error,
+            stroke_error: None,
             outlined_strokes: 0,
             united: Vec::new(),
         }
@@ -113,18 +112,15 @@ pub struct Overhang {
 
 impl WarpedDocument {
     /// Adds a part to its shape's report, whose index is `known` if there is one. Returns the index of the report.
-    pub(super) fn report(&mut self, id: String, part: &WarpedPart, copies: usize, known: Option<usize>) -> usize {
+    pub(super) fn report(&mut self, id: &str, part: &WarpedPart, copies: usize, known: Option<usize>) -> usize {
         let mut path = part.report.clone();
         path.max_error += part.rounding;
         let of_part = ShapeReport {
-            id,
-            copies,
-            path,
             paint_residual: part.residual,
             pictures: usize::from(part.fill_image.is_some()) + usize::from(part.stroke_image.is_some()),
             stroke_error: part.stroke_error,
             outlined_strokes: usize::from(part.stroke.outline().is_some()),
-            united: Vec::new(),
+            ..ShapeReport::new(id, copies, path)
         };
         if let Some((i, shape)) = known.and_then(|i| Some((i, self.shapes.get_mut(i)?))) {
             shape.add(of_part);
@@ -167,13 +163,11 @@ pub(crate) enum PartOutcome {
 
 impl PartOutcome {
     pub(crate) fn warped(&self) -> Option<&WarpedPart> {
-        match self {
-            Self::Kept => None,
-            Self::Warped(w) => Some(w),
-        }
+        if let Self::Warped(part) = self { Some(part) } else { None }
     }
 }
 
+/// The image of a part, with the replacements of its paints.
 #[derive(Debug)]
 pub(crate) struct WarpedPart {
     /// Outline in the part's user space.
@@ -240,6 +234,7 @@ impl WarpedPart {
     }
 }
 
+/// Result for a stroke.
 #[derive(Debug)]
 pub(crate) enum StrokeOutcome {
     /// Factor for width and dashes.
@@ -251,18 +246,12 @@ pub(crate) enum StrokeOutcome {
 impl StrokeOutcome {
     /// The outline of an expanded stroke.
     pub(crate) fn outline(&self) -> Option<&BezPath> {
-        match self {
-            Self::Scaled(_) => None,
-            Self::Outlined(o) => Some(o),
-        }
+        if let Self::Outlined(outline) = self { Some(outline) } else { None }
     }
 
     /// Factor for width and dashes; 1 for an expanded stroke.
     pub(crate) fn scale(&self) -> f64 {
-        match self {
-            Self::Scaled(s) => *s,
-            Self::Outlined(_) => 1.0,
-        }
+        if let Self::Scaled(factor) = self { *factor } else { 1.0 }
     }
 }
 
@@ -311,9 +300,7 @@ impl Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Flattened(why) => write!(f, "the file is flattened, as its structure cannot be kept: {why}"),
-            Self::FittedGradient { id, why } => {
-                write!(f, "a gradient of {id} only follows the best affine fit: {why}")
-            }
+            Self::FittedGradient { id, why } => write!(f, "a gradient of {id} only follows the best affine fit: {why}"),
             Self::SingleWidth { id, error } => {
                 write!(f, "the stroke of {id} extends to where the map is undefined; it keeps a single width")?;
                 if error.is_finite() { write!(f, ", off by up to {error:.3} units") } else { Ok(()) }

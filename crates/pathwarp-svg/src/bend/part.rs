@@ -16,28 +16,29 @@ use pathwarp::refit::PathReport;
 use pathwarp::{GeometryError, Outline, Seg};
 use usvg::{Paint, Stroke};
 
+/// Bends a part with its paints.
 pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let p = t.part;
     // The centre line of an outlined stroke is not written, so a draft suffices.
     let draft = p.fill.is_none() && p.stroke.as_ref().is_some_and(|s| expands(t, s)) && !p.in_tile;
     let bent = if draft { t.draft()? } else { t.bend(&t.outline, &t.contours)? };
     let fit = paint_fit(t, &bent.path);
-    let (centre, pieces) = (bent.report.segments_in, bent.report.segments_out);
+    let (segments_in, pieces) = (bent.report.segments_in, bent.report.segments_out);
     let Filled { mut path, mut data, fill, mut report } = bend_fill(t, bent)?;
     // A gradient on a stroke can become a picture only if the stroke is expanded.
     let stroke_gradient = p.stroke.as_ref().and_then(|s| BentGradient::replacing(t, s.paint(), fit, expands(t, s)));
     let mut unpainted = None;
     let (stroke_gradient, stroke_picture) = by_kind(stroke_gradient, &mut unpainted);
-    let bent = stroke::stroke(t, &path, pieces, stroke_picture.is_some())?;
-    if draft && bent.outcome.outline().is_none() {
+    let stroke = stroke::stroke(t, &path, pieces, stroke_picture.is_some())?;
+    if draft && stroke.outcome.outline().is_none() {
         let refitted = t.bend(&t.outline, &t.contours)?;
         (path, data, report) = (refitted.path, refitted.data, [Some(refitted.report), None]);
     }
     let error = report[0].as_ref().map_or(0.0, |r| r.max_error);
     // Report only what is written. If only the expanded stroke is painted, the path is not.
-    let mut written = kept_reports(p, &bent.outcome, report, fill.is_some());
-    written.extend(bent.report);
-    let report = combined_report(centre, written);
+    let mut written = kept_reports(p, &stroke.outcome, report, fill.is_some());
+    written.extend(stroke.report);
+    let report = combined_report(segments_in, written);
     let fill_gradient = p.fill.as_ref().and_then(|f| BentGradient::replacing(t, f.paint(), fit, true));
     let (fill_gradient, fill_picture) = by_kind(fill_gradient, &mut unpainted);
     let mut out = WarpedPart {
@@ -46,9 +47,9 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         decimals: t.decimals,
         coarsest: t.coarsest(),
         data,
-        stroke: bent.outcome,
-        stroke_error: bent.error.map(|e| e + bent.leverage * (error + t.rounding)),
-        stroke_refused: bent.refused,
+        stroke: stroke.outcome,
+        stroke_error: stroke.error.map(|e| e + stroke.leverage * (error + t.rounding)),
+        stroke_refused: stroke.refused,
         fit,
         fill_gradient,
         stroke_gradient,
@@ -96,13 +97,10 @@ fn expands(t: &PartTask<'_>, s: &Stroke) -> bool {
 /// Finds the affine fit for the part's gradients and patterns.
 fn paint_fit(t: &PartTask<'_>, path: &BezPath) -> Option<PaintFit> {
     let p = t.part;
-    let is_server = |p: &Paint| !matches!(p, Paint::Color(_));
-    let has_server = p.fill.as_ref().is_some_and(|f| is_server(f.paint()))
-        || p.stroke.as_ref().is_some_and(|s| is_server(s.paint()));
-    if !has_server {
+    let mut paints = p.fill.iter().map(usvg::Fill::paint).chain(p.stroke.iter().map(Stroke::paint));
+    if paints.all(|paint| matches!(paint, Paint::Color(_))) {
         return None;
     }
-    let result = path.bounding_box();
     let options = t.options();
     let area = p.local.bounding_box()?;
     match t.pieces {
@@ -110,7 +108,7 @@ fn paint_fit(t: &PartTask<'_>, path: &BezPath) -> Option<PaintFit> {
         [LetterPiece { copies, .. }] if copies.len() == 1 => {
             fits::fit(area, copies[0] * p.frame, t.write, &options.letters.after)
         }
-        _ => fits::fit_copies(area, p.frame, t.write, t.context.map, &options.copies, result),
+        _ => fits::fit_copies(area, p.frame, t.write, t.context.map, &options.copies, path.bounding_box()),
     }
 }
 
@@ -175,13 +173,13 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> 
     /// Fraction of the tolerance by which a line may bend at the samples, since it may bend more between them.
     const STRAIGHT: f64 = 0.95;
     let (p, outline, map) = (t.part, &t.outline, t.map);
-    let on_line = |a: Point, b: Point, i: u32| a.lerp(b, f64::from(i) / f64::from(SAMPLES));
+    let sample = |a: Point, b: Point, i: u32| a.lerp(b, f64::from(i) / f64::from(SAMPLES));
     let bends = |a: Point, b: Point| {
-        let (from, to) = (map.point(a), map.point(b));
+        let chord = Line::new(map.point(a), map.point(b));
         (1..SAMPLES).any(|i| {
-            let q = map.point(on_line(a, b, i));
-            let off = Line::new(from, to).nearest(q, tolerance).distance_sq.sqrt();
-            off > STRAIGHT * tolerance && q.is_finite()
+            let q = map.point(sample(a, b, i));
+            let distance = chord.nearest(q, tolerance).distance_sq.sqrt();
+            distance > STRAIGHT * tolerance && q.is_finite()
         })
     };
     let open = |s: &Subpath| !s.closed && s.start != s.end();
@@ -190,7 +188,7 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> 
     }
     if map.prefers_batches() {
         let lines = outline.subpaths.iter().filter(|s| open(s)).map(|s| (s.end(), s.start));
-        let line = |(a, b): (Point, Point)| (1..SAMPLES).map(move |i| on_line(a, b, i)).chain([a, b]);
+        let line = |(a, b): (Point, Point)| (1..SAMPLES).map(move |i| sample(a, b, i)).chain([a, b]);
         map.prepare(&lines.flat_map(line).collect::<Vec<_>>(), &[]);
     }
     if !outline.subpaths.iter().any(|s| open(s) && bends(s.end(), s.start)) {
@@ -211,12 +209,11 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> 
     Some((Outline { subpaths: outline.subpaths.iter().filter(encloses).map(closed).collect() }, contours))
 }
 
-/// Returns `true` if one of the part's paints follows the affine fit: it is neither replaced by a gradient or a picture nor laid out as tiles.
+/// Returns `true` if one of the part's paints follows the affine fit: no gradient, picture or tiles replace it.
 fn follows_fit(p: &Part, warped: &WarpedPart, options: &WarpOptions) -> bool {
-    let follows = |paint: &Paint, replaced: [bool; 3]| options.moves(paint) && !replaced.contains(&true);
     let w = warped;
-    let filled = [w.fill_gradient.is_some(), w.fill_image.is_some(), p.fill_tiles.is_some()];
-    let stroked = [w.stroke_gradient.is_some(), w.stroke_image.is_some(), p.stroke_tiles.is_some()];
-    p.fill.as_ref().is_some_and(|f| follows(f.paint(), filled))
-        || p.stroke.as_ref().is_some_and(|s| follows(s.paint(), stroked))
+    let fill_replaced = w.fill_gradient.is_some() || w.fill_image.is_some() || p.fill_tiles.is_some();
+    let stroke_replaced = w.stroke_gradient.is_some() || w.stroke_image.is_some() || p.stroke_tiles.is_some();
+    p.fill.as_ref().is_some_and(|f| options.moves(f.paint()) && !fill_replaced)
+        || p.stroke.as_ref().is_some_and(|s| options.moves(s.paint()) && !stroke_replaced)
 }

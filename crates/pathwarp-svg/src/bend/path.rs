@@ -1,7 +1,7 @@
 //! Bends an outline and writes it as path data: keeps arcs, chooses decimals, drops closing lines that come from rounding.
 
 use super::options::Edit;
-use super::united::FINE;
+use super::united::AREA_SHARE;
 use crate::source::number::{MAX_DECIMALS, arcs_data, path_data, path_data_by};
 use pathwarp::edit::{Area, Offset, OpenPaths};
 use pathwarp::engine::{SharedEdges, Span, SpanReport};
@@ -46,9 +46,10 @@ pub fn edit_path(
     };
     if let Edit::Unite { .. } = edit {
         // Find the area within a share of the tolerance; the rest is for its gaps.
-        let area = Area::of(outline, false, FINE * options.tolerance)?.with_gaps_closed(options.tolerance, outline);
-        let one = area.with_arcs_of(outline, FINE * options.tolerance);
-        return warp_path(&one, &AffineMap::IDENTITY, options, precision);
+        let area =
+            Area::of(outline, false, AREA_SHARE * options.tolerance)?.with_gaps_closed(options.tolerance, outline);
+        let united = area.with_arcs_of(outline, AREA_SHARE * options.tolerance);
+        return warp_path(&united, &AffineMap::IDENTITY, options, precision);
     }
     let Some(RefittedPath { path, report, .. }) = edit.apply(outline, options, &[])? else {
         return warp_path(outline, &AffineMap::IDENTITY, options, precision);
@@ -57,7 +58,7 @@ pub fn edit_path(
     if matches!(edit, Edit::Simplify { .. }) && report.segments_out >= report.segments_in {
         return warp_path(outline, &AffineMap::IDENTITY, options, precision);
     }
-    let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
+    let digits = Digits { size: 1.0, given: precision, tolerance: options.tolerance };
     Ok(WarpedPath { data: path_data(&path, digits.decimals(options.tolerance)), path, report })
 }
 
@@ -94,16 +95,17 @@ pub fn warp_path(
     precision: Option<u8>,
 ) -> Result<WarpedPath, GeometryError> {
     options.check()?;
-    let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
-    let contours: Vec<f64> = outline.subpaths.iter().map(|s| options.of_contour(s)).collect(); // Their tolerances.
+    let digits = Digits { size: 1.0, given: precision, tolerance: options.tolerance };
+    // The tolerances of the contours.
+    let contours: Vec<f64> = outline.subpaths.iter().map(|s| options.of_contour(s)).collect();
     let finest = contours.iter().copied().fold(options.tolerance, f64::min);
     let mut outline = outline.clone();
     outline.subpaths.iter_mut().for_each(|s| drop_closing_stub(s, digits.rounding(finest)));
     let spans = SharedEdges::held([(&outline, &contours[..])]).spans(&outline, &contours);
     let tolerance = digits.remaining(options.tolerance);
-    let options = options.clone().with_tolerance(tolerance).with_spans(digits.allowed(&spans));
+    let options = options.clone().with_tolerance(tolerance).with_spans(digits.remaining_for_spans(&spans));
     if let Some((image, report)) = with_arcs(map, &outline, &options, false)? {
-        let data = arcs_data(&image, digits.more(), |i| digits.decimals(contours[i]));
+        let data = arcs_data(&image, digits.extra_for_arcs(), |i| digits.decimals(contours[i]));
         return Ok(WarpedPath { data, path: image.to_bez_path(finest), report });
     }
     let warped = refit::warp_path(&outline, map, &options)?;
@@ -115,10 +117,10 @@ pub fn warp_path(
 }
 
 /// Largest sweep of a written arc. The centre of a longer one is too sensitive to rounding of its ends, without bound at half a turn.
-const MAX_SWEEP: f64 = 2.0 / 3.0 * PI;
+const MAX_SWEEP: f64 = (2.0 / 3.0) * PI;
 
 /// Largest distance of an image from its circle, as a fraction of the radius. Rounding of f64 is far below it.
-const ROUND: f64 = 1e-10;
+const CIRCULAR: f64 = 1e-10;
 
 /// Largest radius of an image, in distances between the image's start and its middle. Flatter arcs are better written as curves.
 const MAX_RADIUS: f64 = 1e4;
@@ -131,8 +133,8 @@ pub(super) fn with_arcs(
     options: &refit::Options,
     lines: bool,
 ) -> Result<Option<(Outline, PathReport)>, GeometryError> {
-    let may_be = |s: &Seg| matches!(s, Seg::Arc(_)) || (lines && matches!(s, Seg::Line(_)));
-    if !outline.segs().any(may_be) || !outline.segs().all(Seg::is_finite) {
+    let may_be_arc = |s: &Seg| matches!(s, Seg::Arc(_)) || (lines && matches!(s, Seg::Line(_)));
+    if !outline.segs().any(may_be_arc) || !outline.segs().all(Seg::is_finite) {
         return Ok(None);
     }
     let mut report = PathReport::default();
@@ -147,21 +149,22 @@ pub(super) fn with_arcs(
             map.prepare(&outline.segs().flat_map(compared_points).chain(starts).collect::<Vec<_>>(), &[]);
         }
         let images = |s: &Subpath| {
-            s.segs.iter().map(|g| Some(g).filter(|g| may_be(g)).and_then(|g| circular_image(g, map))).collect()
+            s.segs.iter().map(|g| Some(g).filter(|g| may_be_arc(g)).and_then(|g| circular_image(g, map))).collect()
         };
-        let all: Vec<Vec<Option<EllipticArc>>> = outline.subpaths.iter().map(images).collect();
-        if all.iter().flatten().all(Option::is_none) {
+        let arcs: Vec<Vec<Option<EllipticArc>>> = outline.subpaths.iter().map(images).collect();
+        if arcs.iter().flatten().all(Option::is_none) {
             return Ok(None);
         }
-        let ends = |end: &mut usize, n: usize| {
-            *end += n;
-            Some(*end)
+        let add = |sum: &mut usize, n: usize| {
+            *sum += n;
+            Some(*sum)
         };
-        let spans: Vec<usize> = options.spans.iter().map(|s| s.segments).scan(0, ends).collect();
-        let subpaths = outline.subpaths.iter().zip(&all);
-        let subpaths = subpaths
-            .zip(outline.subpaths.iter().map(|s| s.segs.len()).scan(0, ends))
-            .map(|((s, arcs), end)| bend_subpath((s, end - s.segs.len()), arcs, map, (options, &spans), &mut report));
+        let span_ends: Vec<usize> = options.spans.iter().map(|s| s.segments).scan(0, add).collect();
+        let mut end = 0;
+        let subpaths = outline.subpaths.iter().zip(&arcs).map(|(s, arcs)| {
+            end += s.segs.len();
+            bend_subpath((s, end - s.segs.len()), arcs, map, (options, &span_ends), &mut report)
+        });
         Outline { subpaths: subpaths.collect::<Result<_, _>>()? }
     };
     let image = Outline { subpaths: image.subpaths.into_iter().map(divide_long_arcs).collect() };
@@ -184,12 +187,13 @@ fn compared_points(g: &Seg) -> Vec<Point> {
 fn circular_image(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
     if let Seg::Arc(arc) = g {
         let r = arc.a.hypot();
-        if (arc.b.hypot() - r).abs() > ROUND * r || arc.a.dot(arc.b).abs() > ROUND * r * r {
+        if (arc.b.hypot() - r).abs() > CIRCULAR * r || arc.a.dot(arc.b).abs() > CIRCULAR * r * r {
             return None;
         }
     }
     let image = |i: u32| map.point(g.eval(f64::from(i) / f64::from(SAMPLES)));
     let (first, last) = (image(0), image(SAMPLES));
+    // The circle through the ends of the first and the second third, which all samples must follow in one direction.
     let center = circumcenter(first, image(SAMPLES / 3), image(2 * SAMPLES / 3))?;
     let radius = first.distance(center);
     if radius > MAX_RADIUS * first.distance(image(SAMPLES / 2)) {
@@ -198,11 +202,8 @@ fn circular_image(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
     let (mut sweep, mut before) = (0.0, first - center);
     for i in 1..=SAMPLES {
         let v = image(i) - center;
-        if (v.hypot() - radius).abs() > ROUND * radius || !v.is_finite() {
-            return None;
-        }
         let step = before.cross(v).atan2(before.dot(v));
-        if step * sweep < 0.0 {
+        if (v.hypot() - radius).abs() > CIRCULAR * radius || !v.is_finite() || step * sweep < 0.0 {
             return None;
         }
         sweep += step;
@@ -222,12 +223,12 @@ fn circumcenter(p: Point, q: Point, r: Point) -> Option<Point> {
 }
 
 /// Bends a subpath, given the images of its arcs; the segments between them are refitted. `first` is the index of its first segment in
-/// the outline, and `ends` are the indices of the segments at which the spans end.
+/// the outline, and `span_ends` are the indices of the segments at which the spans end.
 fn bend_subpath(
     (s, first): (&Subpath, usize),
     arcs: &[Option<EllipticArc>],
     map: &dyn Map,
-    (options, ends): (&refit::Options, &[usize]),
+    (options, span_ends): (&refit::Options, &[usize]),
     report: &mut PathReport,
 ) -> Result<Subpath, GeometryError> {
     let mut out = Subpath { start: map.point(s.start), segs: Vec::with_capacity(s.segs.len()), closed: s.closed };
@@ -237,14 +238,14 @@ fn bend_subpath(
             let p0 = out.end();
             out.segs.push(Seg::Arc(EllipticArc { p0, ..*arc }));
             report.assurance = report.assurance.min(Assurance::Checked);
-            report.max_error = report.max_error.max(ROUND * arc.a.hypot());
+            report.max_error = report.max_error.max(CIRCULAR * arc.a.hypot());
             continue;
         }
         let mut run = Subpath { start: g.start(), segs: vec![*g], closed: false };
         while let Some(((g, _), _)) = rest.next_if(|((_, arc), _)| arc.is_none()) {
             run.segs.push(*g);
         }
-        let options = options.clone().with_spans(spans_within(&options.spans, ends, from..from + run.segs.len()));
+        let options = options.clone().with_spans(spans_within(&options.spans, span_ends, from..from + run.segs.len()));
         let refitted = refit::warp_path(&Outline { subpaths: vec![run] }, map, &options)?;
         report.add(refitted.report);
         out.segs.extend(Outline::from(&refitted.path).subpaths.into_iter().flat_map(|s| s.segs));
@@ -255,12 +256,13 @@ fn bend_subpath(
 /// The spans within a range of segments, cut at its ends. `ends` are the indices of the segments at which the spans end.
 fn spans_within(spans: &[Span], ends: &[usize], segments: Range<usize>) -> Vec<Span> {
     let first = ends.partition_point(|end| *end <= segments.start);
-    let inside = spans[first..].iter().zip(&ends[first..]).take_while(|(s, end)| **end - s.segments < segments.end);
+    let overlapping =
+        spans[first..].iter().zip(&ends[first..]).take_while(|(s, end)| **end - s.segments < segments.end);
     let cut = |(s, &end): (&Span, &usize)| {
         let start = (end - s.segments).max(segments.start);
         Span { segments: end.min(segments.end) - start, ..*s }
     };
-    inside.map(cut).collect()
+    overlapping.map(cut).collect()
 }
 
 /// Divides arcs of more than [`MAX_SWEEP`].
@@ -290,11 +292,11 @@ pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
 }
 
 /// Largest error from rounding, in units of the last decimal: half the diagonal of a square unit, and 0.3 for cubics written as quadratics.
-const OF_UNIT: f64 = std::f64::consts::FRAC_1_SQRT_2 + 0.3;
+const ERROR_PER_UNIT: f64 = std::f64::consts::FRAC_1_SQRT_2 + 0.3;
 
 /// Largest error from rounding to `decimals`, in root user units.
 pub(super) fn rounding(size: f64, decimals: u8) -> f64 {
-    size * OF_UNIT * 0.1_f64.powi(i32::from(decimals))
+    size * ERROR_PER_UNIT * 0.1_f64.powi(i32::from(decimals))
 }
 
 /// The tolerance that remains after rounding.
@@ -302,8 +304,8 @@ pub(super) fn allowed(tolerance: f64, rounding: f64) -> f64 {
     (tolerance - rounding).max(0.5 * tolerance)
 }
 
-/// Rounding may use this many times [`ROUNDING`] of a contour's own tolerance: a tenth of it.
-const COARSE: f64 = 10.0;
+/// Rounding may use this many times [`ROUNDING`] of a contour's tolerance: a tenth of it.
+const CONTOUR_FACTOR: f64 = 10.0;
 
 /// Determines the decimals of written coordinates.
 #[derive(Debug, Clone, Copy)]
@@ -313,17 +315,17 @@ pub(super) struct Digits {
     /// The requested number of decimals, if any.
     pub(super) given: Option<u8>,
     /// The tolerance of the drawing.
-    pub(super) whole: f64,
+    pub(super) tolerance: f64,
 }
 
 impl Digits {
     /// The number of decimals for a contour: the whole drawing's, or more if its rounding exceeds a tenth of the contour's tolerance.
     pub(super) fn decimals(self, tolerance: f64) -> u8 {
-        decimals(self.size, self.whole.min(COARSE * tolerance), self.given)
+        decimals(self.size, self.tolerance.min(CONTOUR_FACTOR * tolerance), self.given)
     }
 
     /// The number of additional decimals that an arc may have.
-    pub(super) fn more(self) -> u8 {
+    pub(super) fn extra_for_arcs(self) -> u8 {
         if self.given.is_none() { 4 } else { 0 }
     }
 
@@ -335,38 +337,41 @@ impl Digits {
     /// The largest step between coordinates that rounding may have, in units as written; the unit of the last decimal is the power of ten
     /// below. In root user space it is the same under any transform. `None` if the number of decimals is requested.
     pub(super) fn coarsest(self, tolerance: f64) -> Option<f64> {
-        let unit = || ROUNDING * self.whole.min(COARSE * tolerance) * std::f64::consts::SQRT_2 / self.size;
+        let unit = || ROUNDING * self.tolerance.min(CONTOUR_FACTOR * tolerance) * std::f64::consts::SQRT_2 / self.size;
         self.given.is_none().then(unit)
     }
 
     /// The tolerance that remains after rounding. It does not depend on the transform (`size`) unless a number of decimals is requested,
     /// so that neighbours under different transforms share edges.
     pub(super) fn remaining(self, tolerance: f64) -> f64 {
-        let rounding = self.coarsest(tolerance).map_or_else(|| self.rounding(tolerance), |u| u * self.size * OF_UNIT);
+        let rounding =
+            self.coarsest(tolerance).map_or_else(|| self.rounding(tolerance), |u| u * self.size * ERROR_PER_UNIT);
         allowed(tolerance, rounding)
     }
 
     /// The spans with the tolerances that remain after rounding.
-    pub(super) fn allowed(self, spans: &[Span]) -> Vec<Span> {
+    pub(super) fn remaining_for_spans(self, spans: &[Span]) -> Vec<Span> {
         spans.iter().map(|s| Span { tolerance: self.remaining(s.tolerance), ..*s }).collect()
     }
 
     /// The largest error of the spans, including rounding, and the largest fraction of a span's tolerance that its error takes.
     pub(super) fn errors(self, spans: &[Span], reports: &[SpanReport]) -> [f64; 2] {
-        let each = spans.iter().zip(reports).map(|(s, r)| (r.max_error + self.rounding(s.tolerance), s.tolerance));
-        each.fold([0.0, 0.0], |[error, share], (e, t)| [f64::max(error, e), f64::max(share, e / t)])
+        let errors = spans.iter().zip(reports).map(|(s, r)| (r.max_error + self.rounding(s.tolerance), s.tolerance));
+        errors.fold([0.0, 0.0], |[error, share], (e, t)| [f64::max(error, e), f64::max(share, e / t)])
     }
 
     /// Writes `path`, the image of `outline`, with decimals for each span.
     pub(super) fn path_data(self, path: &BezPath, outline: &Outline, spans: &[Span], reports: &[SpanReport]) -> String {
-        let mut each: Vec<[u8; 2]> = Vec::with_capacity(path.elements().len());
+        // For each element, the decimals of its handles and of its node, and the coarsest unit.
+        let mut decimals: Vec<[u8; 2]> = Vec::with_capacity(path.elements().len());
         let mut units = Vec::with_capacity(path.elements().len());
         let mut spans = spans.iter().zip(reports).map(|(s, r)| (s, r.pieces)).peekable();
         let mut subpaths = outline.subpaths.iter();
+        // Number of segments of the subpath whose spans are not done.
         let mut left = 0;
         for el in path.elements() {
             units.push(spans.peek().and_then(|(s, _)| self.coarsest(s.tolerance)));
-            each.push(match el {
+            decimals.push(match el {
                 PathEl::MoveTo(_) => {
                     // Skip the closing lines of the previous subpath, which are not written.
                     while left > 0 {
@@ -393,7 +398,7 @@ impl Digits {
                 },
             });
         }
-        path_data_by(path, |i| units[i], |i| each[i])
+        path_data_by(path, |i| units[i], |i| decimals[i])
     }
 }
 
@@ -406,18 +411,13 @@ pub(super) fn has_closing_stub(s: &Subpath, shortest: f64) -> bool {
 pub(super) fn drop_closing_stub(s: &mut Subpath, shortest: f64) {
     if has_closing_stub(s, shortest) {
         s.segs.pop();
-        if let Some(before) = s.segs.last_mut() {
-            *end_mut(before) = s.start;
+        match s.segs.last_mut() {
+            Some(Seg::Line(l)) => l.p1 = s.start,
+            Some(Seg::Quad(q)) => q.p2 = s.start,
+            Some(Seg::Cubic(c)) => c.p3 = s.start,
+            Some(Seg::Arc(a)) => a.p1 = s.start,
+            None => {}
         }
-    }
-}
-
-fn end_mut(s: &mut Seg) -> &mut Point {
-    match s {
-        Seg::Line(l) => &mut l.p1,
-        Seg::Quad(q) => &mut q.p2,
-        Seg::Cubic(c) => &mut c.p3,
-        Seg::Arc(a) => &mut a.p1,
     }
 }
 

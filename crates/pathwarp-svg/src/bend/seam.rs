@@ -6,7 +6,7 @@ use pathwarp::outline::Subpath;
 use pathwarp::{Outline, Seg};
 
 /// Largest distance of coinciding images, as a fraction of their coordinates.
-const SAME: f64 = 1e-9;
+const COINCIDING: f64 = 1e-9;
 
 /// The subpaths of an outline without seams, each with the index of its source subpath. A seam is a pair of segments of a contour that have
 /// one image, with the area on either side of it; without them, a band becomes two contours. Open lines whose ends meet in the image are
@@ -15,12 +15,12 @@ pub(super) fn without_seams(outline: &Outline, map: &dyn Map) -> Option<Vec<(usi
     if matches!(map.class(), Class::Affine(_) | Class::Projective(_)) || map.prefers_batches() {
         return None;
     }
-    let (mut out, mut any) = (Vec::new(), false);
+    let (mut out, mut changed) = (Vec::new(), false);
     for (i, s) in outline.subpaths.iter().enumerate() {
         let (first, last) = (map.point(s.start), map.point(s.end()));
         if !s.closed {
             let closed = s.start != s.end() && meet(first, last);
-            any |= closed;
+            changed |= closed;
             out.push((i, Subpath { closed, ..s.clone() }));
             continue;
         }
@@ -29,13 +29,14 @@ pub(super) fn without_seams(outline: &Outline, map: &dyn Map) -> Option<Vec<(usi
             let start = segs.first().map_or(s.start, Seg::start);
             out.push((i, Subpath { start, segs, closed: true }));
         });
-        any |= out.len() != before + 1 || out[before].1.segs.len() != s.segs.len();
+        changed |= out.len() != before + 1 || out[before].1.segs.len() != s.segs.len();
     }
-    any.then_some(out)
+    changed.then_some(out)
 }
 
+/// Returns `true` if two images coincide.
 fn meet(a: Point, b: Point) -> bool {
-    a.distance(b) <= SAME * (a.to_vec2().hypot() + b.to_vec2().hypot())
+    a.distance(b) <= COINCIDING * (a.to_vec2().hypot() + b.to_vec2().hypot())
 }
 
 /// Divides a contour at its first seam, and the parts at theirs.
@@ -48,9 +49,9 @@ fn divide(segs: Vec<Seg>, map: &dyn Map, out: &mut dyn FnMut(Vec<Seg>)) {
     let (images, sorted) = (&images, &sorted);
     let after = |a: usize| {
         let q = images[(a + 1) % n];
-        let reach = 2.0 * SAME * q.to_vec2().hypot();
-        let from = sorted.partition_point(|k| images[*k].x < q.x - reach);
-        sorted[from..].iter().copied().take_while(move |k| images[*k].x <= q.x + reach)
+        let tolerance = 2.0 * COINCIDING * q.to_vec2().hypot();
+        let from = sorted.partition_point(|k| images[*k].x < q.x - tolerance);
+        sorted[from..].iter().copied().take_while(move |k| images[*k].x <= q.x + tolerance)
     };
     let is_seam = |a: usize, b: usize| {
         let (s, t) = (&segs[a], &segs[b]);
@@ -61,7 +62,7 @@ fn divide(segs: Vec<Seg>, map: &dyn Map, out: &mut dyn FnMut(Vec<Seg>)) {
             && meet(map.point(p), map.point(q))
             && !meet(images[a], map.point(p))
             // Both segments of a fold have the area on one side.
-            && map.jet(p).det() * map.jet(q).det() > 0.0
+            && (map.jet(p).det() * map.jet(q).det()) > 0.0
     };
     let seam = (0..n).find_map(|a| after(a).find(|b| *b > a && is_seam(a, *b)).map(|b| (a, b)));
     let Some((a, b)) = seam else { return out(segs) };

@@ -6,12 +6,14 @@ use usvg::{Paint, SpreadMethod};
 
 /// Number of points whose colours are computed together.
 const BATCH: usize = 32;
+/// Stops closer than this coincide; usvg moves them apart by a rounding error.
+pub(super) const SAME_OFFSET: f64 = 1e-4;
 
 /// A gradient as a function of the plane.
 #[derive(Debug, Clone)]
 pub(crate) struct Shading {
     /// Leads from user space to the gradient's space.
-    pub(crate) inside: Affine,
+    pub(crate) to_gradient: Affine,
     pub(crate) kind: GradientShape,
     pub(crate) stops: Vec<Stop>,
     pub(super) spread: SpreadMethod,
@@ -70,9 +72,9 @@ impl Shading {
             let color = [level(c.red), level(c.green), level(c.blue), f64::from(a)];
             Stop { offset: f64::from(s.offset().get()), color }
         };
-        let inside = affine(base.transform());
-        is_invertible(inside).then(|| Self {
-            inside: inside.inverse(),
+        let transform = affine(base.transform());
+        is_invertible(transform).then(|| Self {
+            to_gradient: transform.inverse(),
             kind,
             stops: base.stops().iter().map(stop).collect(),
             spread: base.spread_method(),
@@ -98,30 +100,32 @@ impl Shading {
 
     /// The image of the gradient under an affine map.
     pub(super) fn transformed(&self, by: Affine) -> Self {
-        Self { inside: self.inside * by.inverse(), ..self.clone() }
+        Self { to_gradient: self.to_gradient * by.inverse(), ..self.clone() }
     }
 
     /// Parameters along the stops at points of user space; NaN outside the cone of a focal gradient.
-    fn along(&self, points: &[Point], out: &mut [f64]) {
+    fn parameters(&self, points: &[Point], out: &mut [f64]) {
         let pairs = out.iter_mut().zip(points);
         match self.kind {
             GradientShape::Linear { from, slope } => {
-                pairs.for_each(|(t, p)| *t = (self.inside * *p - from).dot(slope));
+                pairs.for_each(|(t, p)| *t = (self.to_gradient * *p - from).dot(slope));
             }
             GradientShape::Radial { centre, radius, focus, focal_radius } if centre == focus => {
                 let per_unit = 1.0 / (radius - focal_radius);
-                pairs.for_each(|(t, p)| *t = ((self.inside * *p - focus).hypot2().sqrt() - focal_radius) * per_unit);
+                pairs.for_each(|(t, p)| {
+                    *t = ((self.to_gradient * *p - focus).hypot2().sqrt() - focal_radius) * per_unit;
+                });
             }
             GradientShape::Radial { .. } => {
-                pairs.for_each(|(t, p)| *t = self.cone(self.inside * *p).unwrap_or(f64::NAN));
+                pairs.for_each(|(t, p)| *t = self.cone(self.to_gradient * *p).unwrap_or(f64::NAN));
             }
         }
     }
 
     /// The parameter along the stops at one point.
-    pub(super) fn along_one(&self, p: Point) -> f64 {
+    pub(super) fn parameter_at(&self, p: Point) -> f64 {
         let mut t = [0.0];
-        self.along(&[p], &mut t);
+        self.parameters(&[p], &mut t);
         t[0]
     }
 
@@ -149,10 +153,10 @@ impl Shading {
 
     /// Colours at points of user space: red, green, blue, alpha, not premultiplied.
     pub(super) fn colors(&self, points: &[Point], out: &mut [[f64; 4]]) {
-        let (mut along, mut band) = ([0.0; BATCH], Band::default());
+        let (mut parameters, mut band) = ([0.0; BATCH], Band::default());
         for (points, out) in points.chunks(BATCH).zip(out.chunks_mut(BATCH)) {
-            self.along(points, &mut along);
-            for (color, t) in out.iter_mut().zip(along) {
+            self.parameters(points, &mut parameters);
+            for (color, t) in out.iter_mut().zip(parameters) {
                 *color = self.color(t, &mut band);
             }
         }
@@ -191,35 +195,33 @@ impl Shading {
 
     /// The premultiplied colour at a point of user space.
     pub(super) fn premultiplied(&self, p: Point) -> [f64; 4] {
-        premultiplied(self.color(self.along_one(p), &mut Band::default()))
+        premultiplied(self.color(self.parameter_at(p), &mut Band::default()))
     }
 
     /// An upper bound on the change of a premultiplied channel per unit of user space; infinite if colours jump or no bound is known.
     pub(super) fn steepest(&self) -> f64 {
-        let along = match self.kind {
+        let parameter_slope = match self.kind {
             GradientShape::Linear { slope, .. } => slope.hypot(),
             // The circles are closest on the side to which the focus is shifted.
             GradientShape::Radial { centre, radius, focus, focal_radius } => {
                 1.0 / (radius - focal_radius - (centre - focus).hypot()).max(0.0)
             }
         };
-        self.steps().map(|(_, rate, _)| rate).fold(0.0, f64::max) * along * stretch(self.inside)
+        self.steps().map(|(_, rate, _)| rate).fold(0.0, f64::max) * parameter_slope * stretch(self.to_gradient)
     }
 
     /// Returns `true` if the colour jumps by more than `least` between stops in the range of the given points.
     pub(super) fn jumps(&self, points: impl Iterator<Item = Point>, least: f64) -> bool {
-        /// Stops closer than this coincide; usvg moves them apart by a rounding error.
-        const SAME: f64 = 1e-4;
         /// Margin for the gaps between points, as a fraction of the range.
         const BETWEEN: f64 = 0.05;
         let range = points
-            .map(|p| self.along_one(p))
+            .map(|p| self.parameter_at(p))
             .filter(|t| !t.is_nan())
             .fold(None, |r: Option<(f64, f64)>, t| Some(r.map_or((t, t), |(a, b)| (a.min(t), b.max(t)))));
         let Some((from, to)) = range else { return false };
         let margin = BETWEEN * (to - from);
         let is_seen = |t: f64| self.spread != SpreadMethod::Pad || (from - margin..=to + margin).contains(&t);
-        self.steps().any(|(t, rate, change)| change > least && rate * SAME >= change && is_seen(t))
+        self.steps().any(|(t, rate, change)| change > least && rate * SAME_OFFSET >= change && is_seen(t))
     }
 
     /// For each pair of neighbouring stops, its offset, and the rate and amount by which a premultiplied channel changes at most.

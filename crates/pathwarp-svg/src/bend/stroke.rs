@@ -21,10 +21,8 @@ const EXPANSION: f64 = SIDES + 0.5 * GAPS;
 
 /// Fraction of the tolerance for making outlines simple.
 const UNION: f64 = 0.1;
-
 /// Fraction of the tolerance that an expansion may take before it is repeated.
-const MISSED: f64 = 0.5;
-
+const MAX_EXPANSION: f64 = 0.5;
 /// Finest tolerance of an expansion, in user units.
 const FINEST: f64 = 1e-9;
 /// Finest tolerance of an expansion as a fraction of the largest coordinate, so that rounding is smaller.
@@ -33,6 +31,7 @@ const FINEST_SHARE: f64 = 64.0 * f64::EPSILON;
 /// Index that stands for the whole drawing instead of a contour.
 const DRAWING: usize = usize::MAX;
 
+/// A bent stroke with the measures for its report.
 pub(super) struct BentStroke {
     pub(super) outcome: StrokeOutcome,
     /// Report on the outline.
@@ -84,8 +83,9 @@ pub(super) fn stroke(
         return Ok(BentStroke::outlined(path.clone(), None));
     }
     let resolves = t.options().edit == Some(Edit::Resolve);
-    let bends = |_: &&Stroke| !p.fixed_width || resolves;
-    let Some(s) = p.stroke.as_ref().filter(bends) else { return Ok(BentStroke::scaled(1.0, None)) };
+    let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width || resolves) else {
+        return Ok(BentStroke::scaled(1.0, None));
+    };
     // Even a stroke that is not outlined is expanded with its dashes, to measure its box.
     spend_dashes(&p.local, s, &t.options().refit.budget).map_err(GeometryError::Limit)?;
     let mode = t.options().strokes;
@@ -104,27 +104,24 @@ pub(super) fn stroke(
     }
     if mode == Strokes::Auto {
         let hairline = is_hairline(t, s);
-        let replaced = !hairline && (p.stroke_tiles.is_some() || pictured);
-        if let Some(w) = width.as_ref().filter(|_| !replaced) {
+        let needs_outline = !hairline && (p.stroke_tiles.is_some() || pictured);
+        if let Some(w) = width.as_ref().filter(|_| !needs_outline) {
             let right = [w.mean(), w.middle()].into_iter().find(|s| w.is_right(*s, t.options().refit.tolerance));
             if let Some(scale) = right.or_else(|| hairline.then(|| w.mean())) {
                 return Ok(scaled(w, scale));
             }
         }
     }
-    match outline(t, s, stretch_on_path(t, width.as_ref())) {
+    // The stretch on the path, from its user space to root user space.
+    let known = width.as_ref().map(|w| w.stretch).filter(|s| *s > 0.0 && s.is_finite());
+    match outline(t, s, known.unwrap_or_else(|| stretch(p.frame))) {
         Ok((path, report)) => Ok(BentStroke::outlined(path, Some(report))),
-        Err(e @ GeometryError::Limit(_)) => Err(e),
         // The outline may leave the map's domain; scale the width instead.
-        Err(_) if mode == Strokes::Auto => Ok(BentStroke { refused: true, ..mean() }),
+        Err(e) if mode == Strokes::Auto && !matches!(e, GeometryError::Limit(_)) => {
+            Ok(BentStroke { refused: true, ..mean() })
+        }
         Err(e) => Err(e),
     }
-}
-
-/// The factor by which the map stretches lengths on a path, from its user space to root user space.
-fn stretch_on_path(t: &PartTask<'_>, width: Option<&StrokeWidth<'_>>) -> f64 {
-    let known = width.map(StrokeWidth::stretch).filter(|s| *s > 0.0 && s.is_finite());
-    known.unwrap_or_else(|| stretch(t.part.frame))
 }
 
 /// Expands a part's stroke and bends the outline. `stretch` is the assumed factor by which the map stretches lengths near the path, from
@@ -136,12 +133,12 @@ fn outline(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathR
     let on_page = p.fixed_width.then(|| Outline::clone(&t.outline).transformed(to_px));
     let (local, frame) = on_page.as_ref().map_or((&*p.local, p.frame), |o| (o, to_px.inverse()));
     spend_stroke(&p.local, s, &options.refit.budget).map_err(GeometryError::Limit)?;
-    // The outline of every contour, with the contour's index in the part.
-    let expanded = |fine: &dyn Fn(usize) -> f64| -> Vec<(usize, Outline)> {
+    // The outline of every contour, with the contour's index in the part; `tolerance` is that of each expansion, in the part's user space.
+    let expanded = |tolerance: &dyn Fn(usize) -> f64| -> Vec<(usize, Outline)> {
         let one = |local: &Outline, copies: &[Affine], first: usize| {
-            let each = stroke_outlines(local, s, |i| [SIDES, GAPS].map(|share| share / EXPANSION * fine(first + i)));
+            let tolerances = |i: usize| [SIDES, GAPS].map(|share| (share / EXPANSION) * tolerance(first + i));
             let placed = |(i, o): (usize, Outline)| (first + i, o.transformed(frame).repeated(copies));
-            each.into_iter().map(placed).collect::<Vec<_>>()
+            stroke_outlines(local, s, tolerances).into_iter().map(placed).collect::<Vec<_>>()
         };
         if t.pieces.is_empty() {
             one(local, &options.copies, 0)
@@ -152,25 +149,26 @@ fn outline(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathR
     let extent =
         local.bounding_box().map_or(0.0, |b| [b.x0, b.x1, b.y0, b.y1].map(f64::abs).into_iter().fold(0.0, f64::max));
     let least = FINEST.max(FINEST_SHARE * extent);
-    let fine = |i: usize, stretch: f64| (t.allowed_of(i) * EXPANSION / stretch).max(least);
-    let largest = |each: &[(usize, Outline)]| each.iter().map(|(_, o)| largest_stretch(t, o)).fold(0.0, f64::max);
+    let tolerance = |i: usize, stretch: f64| ((t.allowed_of(i) * EXPANSION) / stretch).max(least);
+    let largest = |all: &[(usize, Outline)]| all.iter().map(|(_, o)| largest_stretch(t, o)).fold(0.0, f64::max);
     let (mut assumed, allowed) = (stretch, t.allowed_of(DRAWING));
-    let mut each = expanded(&|i| fine(i, assumed));
-    let mut found = largest(&each);
+    let mut outlines = expanded(&|i| tolerance(i, assumed));
+    let mut found = largest(&outlines);
     // The map may stretch more beside the path than on it.
-    let expansion = fine(DRAWING, assumed) * found;
-    if expansion > MISSED * allowed {
+    let expansion = tolerance(DRAWING, assumed) * found;
+    if expansion > MAX_EXPANSION * allowed {
         assumed *= expansion / (allowed * EXPANSION);
-        each = expanded(&|i| fine(i, assumed));
-        found = largest(&each);
+        outlines = expanded(&|i| tolerance(i, assumed));
+        found = largest(&outlines);
     }
-    let expansion = |i: usize| fine(i, assumed) * found;
+    // Errors in root user space: of the expansion, and of the union. The rest of the tolerance is for refitting.
+    let expansion = |i: usize| tolerance(i, assumed) * found;
     let finest = t.whole_contours.iter().copied().fold(allowed, f64::min);
     let united = if options.union { UNION * finest } else { 0.0 };
-    let rest = |i: usize| (t.allowed_of(i) - expansion(i)).max((1.0 - MISSED) * t.allowed_of(i)) - united;
+    let rest = |i: usize| (t.allowed_of(i) - expansion(i)).max((1.0 - MAX_EXPANSION) * t.allowed_of(i)) - united;
     let mut refit = t.refit(rest(DRAWING));
-    let mut contours: Vec<usize> = each.iter().flat_map(|(i, o)| vec![*i; o.subpaths.len()]).collect();
-    let mut whole = Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() };
+    let mut contours: Vec<usize> = outlines.iter().flat_map(|(i, o)| vec![*i; o.subpaths.len()]).collect();
+    let mut whole = Outline { subpaths: outlines.into_iter().flat_map(|(_, o)| o.subpaths).collect() };
     if let Some(hidden) = t.hidden {
         whole = t.seen_area(hidden, &whole, false)?;
         contours = vec![DRAWING; whole.subpaths.len()];

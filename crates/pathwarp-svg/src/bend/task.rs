@@ -44,6 +44,7 @@ pub(super) struct BentPath {
     pub(super) report: PathReport,
 }
 
+/// A part to warp.
 pub(super) struct PartTask<'a> {
     pub(super) part: &'a Part,
     pub(super) context: &'a PartContext<'a>,
@@ -86,7 +87,7 @@ impl<'a> PartTask<'a> {
         let (mut outline, contours) = placed_outline(&whole, whole_contours, options, pieces);
         // Placed letters skip the first step; everything else goes through the whole map.
         let map: &dyn Map = if pieces.is_empty() { context.map } else { &options.letters.after };
-        let digits = Digits { size: stretch(write), given: options.precision, whole: options.refit.tolerance };
+        let digits = Digits { size: stretch(write), given: options.precision, tolerance: options.refit.tolerance };
         let finest = contours.iter().copied().fold(options.refit.tolerance, f64::min);
         let (decimals, rounding) = (digits.decimals(finest), digits.rounding(finest));
         if outline.subpaths.iter().any(|s| path::has_closing_stub(s, rounding)) {
@@ -121,31 +122,30 @@ impl<'a> PartTask<'a> {
     /// Bends an outline whose contours have these tolerances.
     pub(super) fn bend(&self, outline: &Outline, contours: &[f64]) -> Result<BentPath, GeometryError> {
         if let Some(parts) = without_seams(outline, self.map) {
-            let divided: Vec<f64> = parts.iter().filter_map(|(i, _)| contours.get(*i).copied()).collect();
+            let tolerances: Vec<f64> = parts.iter().filter_map(|(i, _)| contours.get(*i).copied()).collect();
             let subpaths = parts.into_iter().map(|(_, s)| s).collect();
-            return self.bend_contours(&Outline { subpaths }, &divided, true);
+            return self.bend_contours(&Outline { subpaths }, &tolerances, true);
         }
         self.bend_contours(outline, contours, false)
     }
 
-    /// Bends an outline without seams. If contours go around as `rings`, lines may become arcs.
-    fn bend_contours(&self, outline: &Outline, contours: &[f64], rings: bool) -> Result<BentPath, GeometryError> {
+    /// Bends an outline without seams. If its contours were closed by seams and are rings now, lines may become arcs.
+    fn bend_contours(&self, outline: &Outline, contours: &[f64], are_rings: bool) -> Result<BentPath, GeometryError> {
         let spans = self.options().refit.shared.spans(outline, contours);
-        let options = self.refit(self.allowed()).with_spans(self.digits.allowed(&spans));
+        let options = self.refit(self.allowed()).with_spans(self.digits.remaining_for_spans(&spans));
         if let Some(edit) = self.options().edit {
-            let held: Vec<f64> = (0..contours.len()).map(|i| self.allowed_of(i)).collect();
+            let tolerances: Vec<f64> = (0..contours.len()).map(|i| self.allowed_of(i)).collect();
             if let Some(RefittedPath { path, report, .. }) =
-                edit.for_part(self.part).apply(outline, &self.refit(self.allowed()), &held)?
+                edit.for_part(self.part).apply(outline, &self.refit(self.allowed()), &tolerances)?
             {
                 return Ok(BentPath { path: self.to_local(path), data: None, report });
             }
         }
-        if let Some((image, report)) = with_arcs(self.map, outline, &options, rings)? {
+        if let Some((image, report)) = with_arcs(self.map, outline, &options, are_rings)? {
             let image = if self.back == Affine::IDENTITY { image } else { image.transformed(self.back) };
             let fine = ROUNDING * allowed(self.finest, self.rounding) / stretch(self.write).max(f64::MIN_POSITIVE);
-            let data = arcs_data(&image, self.digits.more(), |i| {
-                self.digits.decimals(contours.get(i).copied().unwrap_or(self.finest))
-            });
+            let decimals = |i: usize| self.digits.decimals(contours.get(i).copied().unwrap_or(self.finest));
+            let data = arcs_data(&image, self.digits.extra_for_arcs(), decimals);
             return Ok(BentPath { path: image.to_bez_path(fine), data: Some(data), report });
         }
         let warped = self.context.known.warp_path(outline, self.map, &options)?;
@@ -223,15 +223,14 @@ pub(super) fn contour_tolerances(
     if all.iter().flatten().any(is_small) { all } else { vec![Vec::new(); parts.len()] }
 }
 
-/// The tolerances suited to the sizes of an outline's contours; in text, to the sizes of letters. `reach` is half the stroke's width.
-fn suited_tolerances(outline: &Outline, reach: f64, is_text: bool, tolerance: f64) -> Vec<f64> {
+/// The tolerances suited to the sizes of an outline's contours; in text, to the sizes of letters. `extent` is the stroke's on either side.
+fn suited_tolerances(outline: &Outline, extent: f64, is_text: bool, tolerance: f64) -> Vec<f64> {
     // A tolerance below the resolution of the numbers cannot be met.
     let finest = (4.0 * RESOLUTION * outline.extent()).min(tolerance);
-    let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(reach, reach)).collect();
-    let size = |b: Rect| b.size().to_vec2().hypot();
+    let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(extent, extent)).collect();
     let tolerance_of = |i: usize| {
-        let around = if is_text { letter_box(&boxes, i) } else { boxes[i] };
-        suited(tolerance, size(around)).max(finest)
+        let shown = if is_text { letter_box(&boxes, i) } else { boxes[i] };
+        suited(tolerance, shown.size().to_vec2().hypot()).max(finest)
     };
     (0..boxes.len()).map(tolerance_of).collect()
 }
@@ -240,9 +239,9 @@ fn suited_tolerances(outline: &Outline, reach: f64, is_text: bool, tolerance: f6
 fn letter_box(boxes: &[Rect], i: usize) -> Rect {
     /// Letters have at most a few holes.
     const NEIGHBOURS: usize = 4;
-    let near = &boxes[i.saturating_sub(NEIGHBOURS)..(i + NEIGHBOURS + 1).min(boxes.len())];
-    let holds = |b: &&Rect| b.union(boxes[i]) == **b;
-    near.iter().filter(holds).copied().fold(boxes[i], |a, b| if b.area() > a.area() { b } else { a })
+    let neighbours = &boxes[i.saturating_sub(NEIGHBOURS)..(i + NEIGHBOURS + 1).min(boxes.len())];
+    let contains = |b: &&Rect| b.union(boxes[i]) == **b;
+    neighbours.iter().filter(contains).copied().fold(boxes[i], |a, b| if b.area() > a.area() { b } else { a })
 }
 
 /// The outline of a part to bend, which consists of all copies, or of the placed letters, with the tolerances of its contours.

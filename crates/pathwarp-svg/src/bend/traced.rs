@@ -14,13 +14,13 @@ pub struct Opacity {
 }
 
 /// The opacity along the outline: one half.
-const LEVEL: f64 = 127.5;
+const HALF: f64 = 127.5;
 
 impl Opacity {
     /// Returns `true` if all pixels are more than half opaque.
     #[must_use]
     pub fn is_full(&self) -> bool {
-        self.values.iter().all(|v| f64::from(*v) > LEVEL)
+        self.values.iter().all(|v| f64::from(*v) > HALF)
     }
 
     /// Polygons along which the picture is half opaque, in pixels, by marching squares: opacity changes linearly between the centres of
@@ -43,19 +43,21 @@ impl Opacity {
         // The crossing on an edge of the grid, which is identified by its first end and its direction: to the right (0) or down (1).
         let crossing = |&(x, y, down): &(usize, usize, usize)| {
             let (a, b) = (value(x, y), value(x + 1 - down, y + down));
-            let t = (LEVEL - a) / (b - a);
+            let t = (HALF - a) / (b - a);
             let [dx, dy] = if down == 1 { [0.0, t] } else { [t, 0.0] };
             Point::new(x as f64 - 0.5 + dx, y as f64 - 0.5 + dy)
         };
+        // The edge of the grid that follows another one along the outline.
         let mut next = HashMap::new();
         for y in 0..=height {
             for x in 0..=self.width {
-                let corners = [value(x, y), value(x + 1, y), value(x + 1, y + 1), value(x, y + 1)].map(|v| v > LEVEL);
+                let corners = [value(x, y), value(x + 1, y), value(x + 1, y + 1), value(x, y + 1)].map(|v| v > HALF);
                 let edges = [(x, y, 0), (x + 1, y, 1), (x, y + 1, 0), (x, y, 1)];
                 // Opaque pixels lie to the right of the outline, which separates two diagonally opposite ones.
                 for i in (0..4).filter(|i| corners[*i] && !corners[(i + 3) % 4]) {
-                    let turns = (1..4).find(|k| !corners[(i + k) % 4]).unwrap_or(1);
-                    next.insert(edges[(i + turns + 3) % 4], edges[(i + 3) % 4]);
+                    // Number of opaque corners in a row from corner i, around the cell.
+                    let run = (1..4).find(|k| !corners[(i + k) % 4]).unwrap_or(1);
+                    next.insert(edges[(i + run + 3) % 4], edges[(i + 3) % 4]);
                 }
             }
         }

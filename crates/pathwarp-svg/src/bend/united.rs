@@ -15,7 +15,7 @@ use std::sync::Arc;
 use usvg::{Fill, Paint};
 
 /// Fraction of the tolerance within which areas are found; the rest is for gaps.
-pub(super) const FINE: f64 = 0.1;
+pub(super) const AREA_SHARE: f64 = 0.1;
 
 /// The united shapes of a drawing.
 #[derive(Default)]
@@ -59,16 +59,14 @@ fn unite_bend(
     out: &mut United,
 ) -> Result<bool, GeometryError> {
     let scene = drawing.scene();
-    let unites =
-        |i: usize| part_bends[i] == Some(k) && scene.parts[i].role == PartRole::Paint && is_seen(&scene.parts[i]);
     let mut areas: BTreeMap<usize, Area> = BTreeMap::new();
-    for i in (0..part_bends.len()).filter(|i| unites(*i) && !scene.parts[*i].in_tile) {
+    for i in (0..part_bends.len()).filter(|i| part_bends[*i] == Some(k)) {
         let (p, outline) = (&scene.parts[i], &drawing.shapes()[i].outline);
-        let Some(e) = p.element() else { continue };
+        let Some(e) = p.element().filter(|_| p.role == PartRole::Paint && is_seen(p) && !p.in_tile) else { continue };
         let even_odd = p.fill.as_ref().is_some_and(|f| f.rule() == usvg::FillRule::EvenOdd);
         let size = outline.bounding_box().map_or(0.0, |b| b.size().to_vec2().hypot());
         let area = match p.fill {
-            Some(_) => Area::of(outline, even_odd, FINE * suited(finest, size).max(1e-9 * outline.extent()))?,
+            Some(_) => Area::of(outline, even_odd, AREA_SHARE * suited(finest, size).max(1e-9 * outline.extent()))?,
             None => Area::default(),
         };
         if area.is_empty() {
@@ -77,11 +75,10 @@ fn unite_bend(
         areas.insert(i, area);
     }
     let mut sets: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-    let around = surroundings(scene);
+    let groups = effect_groups(scene);
     for &i in areas.keys().filter(|i| scene.parts[**i].element().is_some_and(|e| !out.left.contains(&e))) {
-        let paint =
-            if by_fill { scene.parts[i].fill.as_ref().map(paint_key).unwrap_or_default() } else { String::new() };
-        sets.entry(format!("{:?} {paint}", around.get(&i))).or_default().push(i);
+        let paint = scene.parts[i].fill.as_ref().filter(|_| by_fill).map(paint_key).unwrap_or_default();
+        sets.entry(format!("{:?} {paint}", groups.get(&i))).or_default().push(i);
     }
     for set in sets.values() {
         unite_set(drawing, set, &areas, finest, out)?;
@@ -98,24 +95,24 @@ fn unite_set(
     out: &mut United,
 ) -> Result<(), GeometryError> {
     let parts = &drawing.scene().parts;
-    let is_plain = |i: &&usize| parts[**i].owner.is_none();
-    let Some(&one) = set.iter().rfind(is_plain).or(set.last()) else { return Ok(()) };
+    let is_separate = |i: &&usize| parts[**i].owner.is_none();
+    let Some(&remaining) = set.iter().rfind(is_separate).or(set.last()) else { return Ok(()) };
     let sources =
         Outline { subpaths: set.iter().flat_map(|i| drawing.shapes()[*i].outline.subpaths.clone()).collect() };
-    let all = Area::union(set.iter().map(|i| &areas[i]), FINE * tolerance)?.with_gaps_closed(tolerance, &sources);
+    let all = Area::union(set.iter().map(|i| &areas[i]), AREA_SHARE * tolerance)?.with_gaps_closed(tolerance, &sources);
     if set.len() == 1 && all.outline().subpaths.len() == sources.subpaths.len() {
         return Ok(());
     }
     out.outlines.extend(set.iter().map(|i| (*i, Arc::default())));
-    out.outlines.insert(one, Arc::new(all.with_arcs_of(&sources, FINE * tolerance)));
-    if let Some(e) = parts[one].element() {
+    out.outlines.insert(remaining, Arc::new(all.with_arcs_of(&sources, AREA_SHARE * tolerance)));
+    if let Some(e) = parts[remaining].element() {
         out.merged.entry(e).or_default().extend(set.iter().filter_map(|i| parts[*i].element()));
     }
     Ok(())
 }
 
 /// The groups with clip paths, masks, filters or opacity around each part, identified by their addresses, where there are any.
-fn surroundings(scene: &Scene) -> HashMap<usize, Vec<usize>> {
+fn effect_groups(scene: &Scene) -> HashMap<usize, Vec<usize>> {
     fn walk(g: &Group, around: &[usize], out: &mut HashMap<usize, Vec<usize>>) {
         let has_effect = g.clip.is_some() || g.mask.is_some() || !g.filters.is_empty() || g.opacity < 1.0;
         let address = has_effect.then_some(std::ptr::from_ref(g).addr());

@@ -12,19 +12,19 @@ use pathwarp::{GeometryError, Outline};
 use usvg::{FillRule, ImageKind, MaskType, Paint};
 
 /// The selected parts and bitmaps, with the settings for finding their visible area.
-pub(super) struct Seen<'a> {
+pub(super) struct Visible<'a> {
     pub(super) drawing: &'a Drawing,
     pub(super) parts: &'a [bool],
     pub(super) bitmaps: &'a [bool],
     /// Reads the opacity of pictures. Without it, they fill their boxes.
     pub(super) painter: Option<&'a Painter>,
     /// Tolerance of areas, in root user units.
-    pub(super) fine: f64,
+    pub(super) tolerance: f64,
 }
 
-/// The content of a group that counts.
+/// The content of a group that counts towards its area.
 #[derive(Clone, Copy, PartialEq)]
-enum Ink {
+enum Counted {
     /// Everything painted.
     Paint,
     /// All areas, whatever their paint, as in clip paths.
@@ -33,69 +33,72 @@ enum Ink {
     Light,
 }
 
-impl Seen<'_> {
+impl Visible<'_> {
+    /// The visible area in root user space.
     pub(super) fn area(&self) -> Result<Area, GeometryError> {
-        self.group_area(&self.drawing.scene().root, Ink::Paint)
+        self.group_area(&self.drawing.scene().root, Counted::Paint)
     }
 
-    fn group_area(&self, g: &Group, ink: Ink) -> Result<Area, GeometryError> {
+    fn group_area(&self, g: &Group, counted: Counted) -> Result<Area, GeometryError> {
         let mut areas = Vec::new();
-        self.add_group(g, ink, &mut areas)?;
-        Area::union(&areas, self.fine)
+        self.add_group(g, counted, &mut areas)?;
+        Area::union(&areas, self.tolerance)
     }
 
-    fn add_group(&self, g: &Group, ink: Ink, out: &mut Vec<Area>) -> Result<(), GeometryError> {
-        if g.opacity <= 0.0 && ink != Ink::Clip {
+    fn add_group(&self, g: &Group, counted: Counted, out: &mut Vec<Area>) -> Result<(), GeometryError> {
+        if g.opacity <= 0.0 && counted != Counted::Clip {
             return Ok(());
         }
         let first = out.len();
         for n in &g.children {
             match n {
-                Node::Group(g) => self.add_group(g, ink, out)?,
-                Node::Text { content, .. } => self.add_group(content, ink, out)?,
-                Node::Image(i) if ink == Ink::Light || (ink == Ink::Paint && self.bitmaps[*i]) => {
+                Node::Group(g) => self.add_group(g, counted, out)?,
+                Node::Text { content, .. } => self.add_group(content, counted, out)?,
+                Node::Image(i) if counted == Counted::Light || (counted == Counted::Paint && self.bitmaps[*i]) => {
                     out.push(self.picture_area(*i)?);
                 }
                 Node::Image(_) => {}
-                Node::Part(i) if ink == Ink::Light && is_black(&self.drawing.scene().parts[*i]) => {
+                Node::Part(i) if counted == Counted::Light && is_black(&self.drawing.scene().parts[*i]) => {
+                    // Black covers what is painted beneath it in a luminance mask.
                     let black = self.fill_area(*i)?;
                     for area in &mut out[first..] {
-                        *area = area.difference(&black, self.fine)?;
+                        *area = area.difference(&black, self.tolerance)?;
                     }
                 }
-                Node::Part(i) => self.add_part(*i, ink, out)?,
+                Node::Part(i) => self.add_part(*i, counted, out)?,
             }
         }
         if (g.clip.is_some() || g.mask.is_some()) && out.len() > first {
-            let mut area = Area::union(&out[first..], self.fine)?;
+            let mut area = Area::union(&out[first..], self.tolerance)?;
             if let Some(clip) = g.clip {
-                area = area.intersection(&self.clip_area(clip)?, self.fine)?;
+                area = area.intersection(&self.clip_area(clip)?, self.tolerance)?;
             }
             if let Some(mask) = g.mask {
-                area = area.intersection(&self.mask_area(mask)?, self.fine)?;
+                area = area.intersection(&self.mask_area(mask)?, self.tolerance)?;
             }
             out.splice(first.., [area]);
         }
         Ok(())
     }
 
-    fn add_part(&self, i: usize, ink: Ink, out: &mut Vec<Area>) -> Result<(), GeometryError> {
+    fn add_part(&self, i: usize, counted: Counted, out: &mut Vec<Area>) -> Result<(), GeometryError> {
         let p = &self.drawing.scene().parts[i];
-        if ink == Ink::Clip {
+        if counted == Counted::Clip {
             out.extend(p.visible.then(|| self.fill_area(i)).transpose()?);
             return Ok(());
         }
         if !is_seen(p) || p.in_tile || (p.role == PartRole::Paint && !self.parts[i]) {
             return Ok(());
         }
-        let shows = |paint: &Paint| ink == Ink::Paint || is_bright(paint);
+        let shows = |paint: &Paint| counted == Counted::Paint || is_bright(paint);
         if p.fill.as_ref().is_some_and(|f| f.opacity().get() > 0.0 && shows(f.paint())) {
             out.push(self.fill_area(i)?);
         }
         if p.stroke.as_ref().is_some_and(|s| s.opacity().get() > 0.0 && shows(s.paint())) {
             let drawing = self.drawing;
-            let stroke = stroked(p, drawing.scene().to_px, self.fine, &drawing.budget).map_err(GeometryError::Limit)?;
-            out.extend(stroke.map(|s| Area::of(&s, false, self.fine)).transpose()?);
+            let stroke =
+                stroked(p, drawing.scene().to_px, self.tolerance, &drawing.budget).map_err(GeometryError::Limit)?;
+            out.extend(stroke.map(|s| Area::of(&s, false, self.tolerance)).transpose()?);
         }
         Ok(())
     }
@@ -103,14 +106,14 @@ impl Seen<'_> {
     fn fill_area(&self, i: usize) -> Result<Area, GeometryError> {
         let fill = self.drawing.scene().parts[i].fill.as_ref();
         let even_odd = fill.is_some_and(|f| f.rule() == FillRule::EvenOdd);
-        Area::of(&self.drawing.shapes()[i].outline, even_odd, self.fine)
+        Area::of(&self.drawing.shapes()[i].outline, even_odd, self.tolerance)
     }
 
     fn clip_area(&self, i: usize) -> Result<Area, GeometryError> {
         let clip = &self.drawing.scene().clips[i];
-        let area = self.group_area(&clip.root, Ink::Clip)?;
+        let area = self.group_area(&clip.root, Counted::Clip)?;
         match clip.clip {
-            Some(next) => area.intersection(&self.clip_area(next)?, self.fine),
+            Some(next) => area.intersection(&self.clip_area(next)?, self.tolerance),
             None => Ok(area),
         }
     }
@@ -120,11 +123,11 @@ impl Seen<'_> {
         let mask = &self.drawing.scene().masks[i];
         let r = mask.rect;
         let corners = [(r.x0, r.y0), (r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1)].map(|p| mask.frame * Point::from(p));
-        let region = Area::of(&Outline::from_points(&corners, true), false, self.fine)?;
-        let ink = if mask.kind == MaskType::Luminance { Ink::Light } else { Ink::Paint };
-        let area = self.group_area(&mask.root, ink)?.intersection(&region, self.fine)?;
+        let region = Area::of(&Outline::from_points(&corners, true), false, self.tolerance)?;
+        let counted = if mask.kind == MaskType::Luminance { Counted::Light } else { Counted::Paint };
+        let area = self.group_area(&mask.root, counted)?.intersection(&region, self.tolerance)?;
         match mask.mask {
-            Some(next) => area.intersection(&self.mask_area(next)?, self.fine),
+            Some(next) => area.intersection(&self.mask_area(next)?, self.tolerance),
             None => Ok(area),
         }
     }
@@ -132,10 +135,10 @@ impl Seen<'_> {
     /// The area in which a picture is more than half opaque.
     fn picture_area(&self, i: usize) -> Result<Area, GeometryError> {
         /// Distance in pixels within which the edge of a picture is uncertain.
-        const UNKNOWN: f64 = 0.2;
+        const EDGE_UNCERTAINTY: f64 = 0.2;
         let b = &self.drawing.scene().bitmaps[i];
         let Some(corners) = picture_corners(b) else { return Ok(Area::default()) };
-        let shown = Area::of(&Outline::from_points(&corners, true), false, self.fine)?;
+        let shown = Area::of(&Outline::from_points(&corners, true), false, self.tolerance)?;
         let (ImageKind::PNG(data) | ImageKind::GIF(data) | ImageKind::WEBP(data)) = b.image.kind() else {
             return Ok(shown);
         };
@@ -143,9 +146,10 @@ impl Seen<'_> {
             return Ok(shown);
         };
         let traced = opacity.traced().transformed(b.frame);
-        let options = refit::Options::new(self.fine.max(UNKNOWN * stretch(b.frame))).with_nodes(refit::Nodes::Source);
+        let options = refit::Options::new(self.tolerance.max(EDGE_UNCERTAINTY * stretch(b.frame)))
+            .with_nodes(refit::Nodes::Source);
         let outline = Outline::from(&refit::simplified(&traced, None, &options, &[])?.path);
-        Area::of(&outline, false, self.fine)?.intersection(&shown, self.fine)
+        Area::of(&outline, false, self.tolerance)?.intersection(&shown, self.tolerance)
     }
 }
 

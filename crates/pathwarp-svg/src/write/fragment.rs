@@ -412,8 +412,8 @@ impl<'a> Writer<'a> {
         let mut tag = self.markup.element(tag).with("id", &id).with("gradientUnits", "userSpaceOnUse");
         let values: Vec<f64> = geometry.iter().map(|g| g.1).collect();
         tag = geometry.iter().zip(shorts(&values)).fold(tag, |tag, ((name, _), v)| tag.with(name, &v));
-        if bent.inside != Affine::IDENTITY {
-            tag = tag.with("gradientTransform", &matrix(bent.inside.inverse()));
+        if bent.to_gradient != Affine::IDENTITY {
+            tag = tag.with("gradientTransform", &matrix(bent.to_gradient.inverse()));
         }
         let stop = |s: &Stop| {
             let [r, g, b] = [0, 1, 2].map(|channel| (s.color[channel] * 255.0).round() as u8);

@@ -148,7 +148,7 @@ both rows opposite each other, on parallel lines or on lines through one point",
         match (self.q0, self.q1) {
             (None, None) if !has_weights => return Ok(map),
             _ if self.spline.is_some() => {
-                let problem = "leaves no weight free: leave `spacing`, `q0`, `q1` and `weight` out";
+                let problem = "leaves no weight free; omit `spacing`, `q0`, `q1` and `weight`";
                 return Err(Error::usage("spline", "", problem));
             }
             (None, None) => {}
@@ -177,7 +177,8 @@ both rows opposite each other, on parallel lines or on lines through one point",
             return Err(wrong([*i, *j], *w, "contradicts the others: three weights determine all; leave one out"));
         }
         let [k0, k1, g] = [0, 1, 2].map(|k| change[k][0].exp());
-        map.respaced([k0, k1], g).ok_or_else(|| Error::usage("spacing", "", "leads to weights out of range"))
+        map.respaced([k0, k1], g)
+            .ok_or_else(|| Error::usage("spacing", "", "leads to weights out of range; choose values nearer to 1"))
     }
 
     /// Returns the map whose lines across divide the segment between two points evenly.

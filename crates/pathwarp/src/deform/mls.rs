@@ -68,7 +68,7 @@ impl Mls {
         let Self { ref handles, stiffness, alpha, .. } = *self;
         let from: Vec<Point> = handles.iter().map(|h| h.0).collect();
         if handles.len() > MAX_HANDLES {
-            let problem = format!("pairs are too many: at most {MAX_HANDLES}");
+            let problem = format!("pairs are too many; at most {MAX_HANDLES} are possible");
             return Err(Error::usage("pair", handles.len().to_string(), problem));
         }
         anchors::distinct("the points to be moved", &from)?;

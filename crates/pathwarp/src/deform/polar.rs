@@ -115,7 +115,11 @@ impl Polar {
         let Self { frame, inner, outer, conformal, .. } = *self;
         let (width, height) = (frame.width(), frame.height());
         if conformal && outer.is_some() {
-            return Err(Error::usage("outer", "", "follows from `inner` and `sweep` with `spacing conformal`"));
+            return Err(Error::usage(
+                "outer",
+                "",
+                "follows from `inner` and `sweep` with `spacing conformal`; omit it",
+            ));
         }
         let (near, far) = match (inner, outer) {
             (None, None) => (width / sweep.abs(), width / sweep.abs() + height),

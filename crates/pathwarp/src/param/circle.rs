@@ -113,7 +113,10 @@ impl<'a> Values<'a> {
         let Some(share) = of_page else {
             return Ok((self.needed(name, |t| value::length(t, axis, self.frame))?, of_frame));
         };
-        let page = self.frame.page.ok_or_else(|| format!("refers to the page ({name}), and there is none"))?;
+        let page = self
+            .frame
+            .page
+            .ok_or_else(|| format!("refers to the page ({name}), and there is none; give a length instead"))?;
         Ok((self.needed(name, |_| value::length(share, axis, &Frame::new(page)))?, Some(page)))
     }
 

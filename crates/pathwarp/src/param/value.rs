@@ -197,7 +197,7 @@ pub(super) enum ValueError {
     NotAPoint,
     #[error("is neither a box x,y,w,h nor the word artwork")]
     NotABox,
-    #[error("has no area")]
+    #[error("has no area; give it a width and a height above 0")]
     NoArea,
     /// An error in one word of several.
     #[error("contains `{word}`, which {error}")]

@@ -422,7 +422,9 @@ impl Badge<'_> {
             Settings::new(PARAMS, &args, &frame).and_then(|s| s.path_if(SEPARATOR)).map_err(Failure::of_recipe)?;
         let Some(path) = path.map(|p| p.outline) else { return Ok(None) };
         let bounds = path.bounding_box().filter(|b| b.width() > 0.0 && b.height() > 0.0);
-        bounds.map(|_| Some(path)).ok_or_else(|| Failure::usage(format!("--separator: {reference} has no area")))
+        bounds
+            .map(|_| Some(path))
+            .ok_or_else(|| Failure::usage(format!("--separator: {reference} has no area; choose another shape")))
     }
 
     /// Sets the separators halfway between the ends of the lines.

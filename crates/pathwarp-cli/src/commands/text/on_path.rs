@@ -319,10 +319,10 @@ fn path_and_angles(
     let angles = m.get_many::<String>(AT).into_iter().flatten().map(|t| settings.angle_in(AT, t));
     let angles: Vec<f64> = angles.collect::<Result<_, _>>()?;
     if angles.len() > 2 {
-        return Err(Failure::usage("--at: there are two lines at most, and so two angles"));
+        return Err(Failure::usage("--at: give two angles at most, one for each line"));
     }
     let path = settings.path_if(ON).map_err(Failure::of_recipe)?;
-    let path = path.ok_or_else(|| Failure::usage("--on: name a path"))?;
+    let path = path.ok_or_else(|| Failure::usage("--on: name a path, such as circle:r=60mm"))?;
     Ok((path, angles))
 }
 

@@ -170,7 +170,7 @@ impl Anamorph3 {
         if let Some([shared, torn]) = self.reference.faces(&values) {
             built.note(format!("continuous across the faces {shared}"));
             if !torn.is_empty() {
-                let problem = "outer faces with corners that move, at which a model is torn that crosses them";
+                let problem = "outer faces with corners that move, where a model that crosses them is torn";
                 built.note(format!("{problem}: {torn}"));
             }
         }
@@ -691,7 +691,7 @@ fn build(s: &Settings3<'_>, eye: Eye3) -> Result<Built3, Error> {
     if let Some(form) = form {
         let others = ["reference", "axis", "cells", "push", "point", "away", "at"];
         if let Some(name) = others.iter().find(|n| s.flat().given(n)) {
-            let problem = "does not go with `collineation`, which has all numbers already; omit one of them";
+            let problem = "cannot go with `collineation`, which has all numbers already; omit one of them";
             return Err(Error::usage(name, "", problem));
         }
         return Ok(build_collineation(eye, form));

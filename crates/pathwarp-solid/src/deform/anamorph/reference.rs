@@ -180,15 +180,15 @@ impl Reference3 {
         let wrong =
             |t: &[usize; 4], problem: &str| Error::usage("tetrahedra", t.map(|i| i.to_string()).join(","), problem);
         if let Some(t) = all.get(MAX_TETRAHEDRA) {
-            return Err(wrong(t, "is one too many: 1000 at most"));
+            return Err(wrong(t, "is one tetrahedron too many; at most 1000 are possible"));
         }
         for t in &all {
             if t.iter().any(|i| *i >= points.len()) {
                 let last = points.len().max(1) - 1;
-                return Err(wrong(t, &format!("has a point that the `reference` lacks: 0 to {last}")));
+                return Err(wrong(t, &format!("names a point that the `reference` lacks; its points are 0 to {last}")));
             }
             Self::new(&t.map(|i| points[i]), [1; 3], DVec3::ZERO)
-                .map_err(|_| wrong(t, "has its four corners in one plane, or one twice"))?;
+                .map_err(|_| wrong(t, "has four corners in one plane, or one corner twice; choose other points"))?;
         }
         for (k, t) in all.iter().enumerate() {
             let middle = t.iter().map(|i| points[*i]).sum::<DVec3>() * 0.25;

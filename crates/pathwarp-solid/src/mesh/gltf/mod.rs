@@ -85,7 +85,11 @@ fn parse(bytes: &[u8]) -> Result<Gltf, String> {
     let root = document.into_json();
     let mut attributes = root.meshes.iter().flat_map(|m| &m.primitives).flat_map(|p| p.attributes.values());
     if let Some(index) = attributes.find(|i| i.value() >= root.accessors.len()) {
-        return Err(format!("a primitive uses accessor {}, and there are {}", index.value(), root.accessors.len()));
+        return Err(format!(
+            "a primitive uses accessor {}, but there are only {}",
+            index.value(),
+            root.accessors.len()
+        ));
     }
     let document = gltf::Document::from_json(root).map_err(|e| e.to_string())?;
     Ok(Gltf { document, blob })
@@ -159,7 +163,7 @@ fn append_primitive(
         None => (0..index32(count)).collect(),
     };
     if let Some(i) = indices.iter().find(|i| **i as usize >= count) {
-        return Err(MeshError::whole(format!("an index is out of range: {i}, and there are {count} vertices")));
+        return Err(MeshError::whole(format!("the index {i} is out of range: there are {count} vertices")));
     }
     let index = |first: Option<usize>, i: u32| first.map_or(NONE, |first| index32(first).saturating_add(i));
     let corner = |i: &u32| Corner { vertex: index(Some(first), *i), uv: index(uvs, *i), normal: index(normals, *i) };
@@ -263,7 +267,7 @@ impl Buffers {
             };
             let (have, announced) = (bytes.len(), buffer.length());
             if have < announced {
-                return Err(MeshError::whole(format!("buffer {i} has {have} bytes, and announces {announced}")));
+                return Err(MeshError::whole(format!("buffer {i} has {have} bytes, but announces {announced}")));
             }
             out.push(bytes);
         }
@@ -319,7 +323,7 @@ impl Buffers {
         let last = accessor.count().checked_sub(1).and_then(|n| n.checked_mul(stride));
         let end = last.and_then(|n| n.checked_add(accessor.offset())).and_then(|n| n.checked_add(size));
         if accessor.count() > 0 && end.is_none_or(|end| end > bytes.len()) {
-            return Err(wrong(&format!("announces {} items, and its data ends before", accessor.count())));
+            return Err(wrong(&format!("announces {} items, but its data ends before them", accessor.count())));
         }
         let mut numbers = [0.0; 4];
         for i in 0..accessor.count() {

@@ -152,7 +152,7 @@ fn damaged_and_outside_files_are_refused_quickly() {
         (changed(&|r| r["nodes"][1]["mesh"] = json!(5)), "damaged glTF"),
         (changed(&|r| r["nodes"][1]["children"] = json!([0])), "elements"),
         (changed(&|r| r["scenes"] = json!([])), "damaged glTF"),
-        (binary(&root, &index), "an index is out of range: 9, and there are 4 vertices"),
+        (binary(&root, &index), "the index 9 is out of range: there are 4 vertices"),
         (binary(&root, &nan), "not finite"),
         (good[..good.len() - 30].to_vec(), "damaged glTF"),
         (b"glTF\x02\0\0\0\xff\xff\xff\xff".to_vec(), "damaged glTF"),

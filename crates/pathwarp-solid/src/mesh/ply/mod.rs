@@ -231,7 +231,9 @@ fn check_count(element: &ElementDef, header: &Header, left: usize) -> Result<(),
     // The last line may lack its line break.
     if element.count.saturating_mul(min_size) > left + 1 {
         let n = element.count;
-        return Err(MeshError::whole(format!("announces {n} elements `{name}`, and {left} bytes are left for them")));
+        return Err(MeshError::whole(format!(
+            "announces {n} elements `{name}`, but only {left} bytes are left for them"
+        )));
     }
     Ok(())
 }

@@ -261,7 +261,7 @@ impl Reflection {
             (b.facing, "the mirror hides itself: the eye sees its back; move the eye or lessen the tilt"),
             (
                 -b.hit[1] / r,
-                "the mirror is under the table there and hides itself; make the artwork smaller (`picture-width`), lift it (`lift`), or lessen the tilt",
+                "the mirror is under the table and hides itself; make the artwork smaller (`picture-width`), lift it (`lift`), or lessen the tilt",
             ),
             (
                 b.direction[1],

@@ -221,7 +221,7 @@ impl Anamorph {
                 match towards[2] {
                     0.0 => self.in_plane(eye),
                     z if z < -1e-9 * surface::length(towards) => self.in_front(eye),
-                    _ => Err(Error::usage("eye", "", "is behind the picture; DZ must be positive, in front of it")),
+                    _ => Err(Error::usage("eye", "", "is behind the drawing; give a positive DZ, in front of it")),
                 }
             }
         }

@@ -139,7 +139,7 @@ impl PushedNet {
             [a, b] => {
                 let r = Rect::from_points(a, b);
                 if r.width() <= 0.0 || r.height() <= 0.0 {
-                    return Err(Error::usage("reference", "", "has no area"));
+                    return Err(Error::usage("reference", "", "has no area; name two opposite corners of a box"));
                 }
                 Ok(Reference::Rectangle(r, self.degree))
             }

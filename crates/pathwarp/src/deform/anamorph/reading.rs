@@ -32,7 +32,7 @@ pub(super) fn look(s: &Settings<'_>) -> Result<Look, Error> {
         return Ok(if s.flag("seen")? { Look::Eye } else { Look::Unrolled });
     };
     if s.flag("seen")? {
-        return Err(Error::usage("view", text, "and `seen` exclude each other"));
+        return Err(Error::usage("view", text, "cannot go with `seen`; omit one of them"));
     }
     let parts: Vec<&str> = text.split(',').collect();
     let [x, y, z] = parts[..] else {
@@ -176,7 +176,7 @@ pub(super) fn onto(s: &Settings<'_>, text: &str) -> Result<Onto, Error> {
                 (height, None) => height,
                 (None, Some(slant)) => {
                     let height = (slant * slant - (top - bottom).powi(2)).sqrt();
-                    let problem = "has a slant that is shorter than the radii differ";
+                    let problem = "has a slant that is too short; make it longer than the difference of the radii";
                     Some(Some(height).filter(|h| *h > 0.0).ok_or_else(|| w.wrong(problem))?)
                 }
             };

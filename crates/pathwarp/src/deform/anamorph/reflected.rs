@@ -20,7 +20,7 @@ impl Anamorph {
             ("local", self.local),
         ];
         if let Some((name, _)) = others.iter().find(|o| o.1) {
-            let problem = "does not go with `mirror`, whose drawing lies on the table; omit one of them";
+            let problem = "cannot go with `mirror`, whose drawing lies on the table; omit one of them";
             return Err(Error::usage(name, "", problem));
         }
         let eye = match (self.eye, self.distance, self.eye_height) {

@@ -204,7 +204,7 @@ pub(super) fn scale_for(
     if seen > 0.0 && in_front && drawn > 0.0 {
         return Ok(seen / drawn);
     }
-    let problem = "is impossible: from there, so long a stretch of this ground is not seen from its front";
+    let problem = "is impossible: the eye does not see so long a stretch of this ground from its front; shorten it, or move the eye";
     Err(Error::usage("length", "", problem))
 }
 
@@ -222,10 +222,10 @@ pub(super) fn check_hit(onto: Option<Onto>, projection: &Anamorphosis, frame: Re
     let Some(p) = missed else { return Ok(()) };
     let advice = match projection.surface {
         Surface::Plane(_) => {
-            "the ray there never comes down on the plane; raise the eye, go nearer, or make the artwork smaller (`picture-width`, `length`)"
+            "the ray never comes down on the plane; raise the eye, go nearer, or make the artwork smaller (`picture-width`, `length`)"
         }
-        Surface::Radial(_) => "the control points are pushed through infinity there; push them less",
-        _ => "the ray there misses the surface; make the artwork smaller (`picture-width`) or the radius larger",
+        Surface::Radial(_) => "the control points are pushed through infinity; push them less",
+        _ => "the ray misses the surface; make the artwork smaller (`picture-width`) or the radius larger",
     };
     let problem = format!("does not hold the artwork's box: at {} {advice}", show(p));
     Err(onto.map_or_else(|| Error::usage("push", "", problem.clone()), |onto| onto.wrong(problem.clone())))

@@ -462,7 +462,7 @@ fn every_fault_is_named() {
         (&[("distance", "100"), ("onto", "cone:top=20")], "top-radius=… or top-diameter=…"),
         (&[("distance", "100"), ("onto", "cone:bottom=20,top-radius=9")], "bottom-radius=… or bottom-diameter=…"),
         (&[("distance", "100"), ("onto", "cone:top-radius=20")], "needs bottom-radius=… or bottom-diameter=…"),
-        (&[("distance", "100"), ("onto", "cone:top-radius=90,bottom-radius=40,slant=50")], "a slant that is shorter"),
+        (&[("distance", "100"), ("onto", "cone:top-radius=90,bottom-radius=40,slant=50")], "a slant that is too short"),
         (&[("distance", "100"), ("onto", "torus:radius=20")], "not a surface"),
         (&[("distance", "100"), ("onto", "sphere:radius=200")], "view is needed"),
         (&[("distance", "100"), ("onto", "sphere:eye"), ("push", "0,0:2")], "has the surface already"),
@@ -486,7 +486,7 @@ fn every_fault_is_named() {
         (&[("point", "50,50")], "X,Y:FACTOR"),
         (&[("eye", "inf:1")], "inf:DX,DY"),
         (&[("eye", "inf:0,0")], "no direction"),
-        (&[("eye", "inf:0,-1,-1"), ("onto", "plane:floor")], "DZ must be positive"),
+        (&[("eye", "inf:0,-1,-1"), ("onto", "plane:floor")], "give a positive DZ"),
         (&[("eye", "inf:0,1,1"), ("onto", "plane:floor")], "from behind"),
         (&[("eye", "inf:0,-1,1"), ("onto", "plane:floor"), ("distance", "9")], "is infinite for this `eye`"),
         (&[("eye", "inf:0,-1,1"), ("onto", "sphere:eye")], "needs a `distance`"),
@@ -513,10 +513,7 @@ fn every_fault_is_named() {
         ),
         (&[("mirror", "cylinder:radius=60,lift=-50"), ("distance", "300"), ("eye-height", "200")], "hides itself"),
         (&[("mirror", "cone:radius=60"), ("distance", "300")], "needs height"),
-        (
-            &[("mirror", "cylinder:radius=60"), ("onto", "plane:floor"), ("distance", "300")],
-            "does not go with `mirror`",
-        ),
+        (&[("mirror", "cylinder:radius=60"), ("onto", "plane:floor"), ("distance", "300")], "cannot go with `mirror`"),
         (&[("foot", "5,5")], "mirror is needed"),
     ];
     for (pairs, part) in cases {

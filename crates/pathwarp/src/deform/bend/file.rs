@@ -31,7 +31,9 @@ pub(super) fn read(name: &str, text: &str) -> Result<Handles, Error> {
     };
     if let Some(i) = vanishes {
         let number = i + 1;
-        return Err(error(format!("has a handle that vanishes, of {kind} {number}; the artwork would collapse there")));
+        return Err(error(format!(
+            "has a handle without length at {kind} {number}, where the artwork would collapse; make it longer"
+        )));
     }
     let vectors = |level: Vec<[f64; 2]>| level.into_iter().map(vector).collect();
     let piece = |p: PieceHandles| p.levels.into_iter().map(vectors).collect();

@@ -308,7 +308,7 @@ impl Bend {
     /// Refuses values that contradict each other.
     fn check_together(&self) -> Result<(), Error> {
         if let Some(setting) = self.setting.filter(|_| self.letters.is_empty() && self.objects.is_empty()) {
-            let problem = "needs letters on a level baseline, or objects: there are neither";
+            let problem = "needs letters on a level baseline, or objects; the artwork has neither";
             return Err(Error::usage("glyphs", setting.name(), problem));
         }
         if self.copies.is_some() && matches!(self.stretch, Stretch::Scale | Stretch::Fit) {
@@ -554,7 +554,7 @@ const PRESETS: &[&str] = &["stretch", "swell", "taper"];
 fn preset(s: &Settings<'_>) -> Result<Option<Bend>, Error> {
     if !s.given("preset") {
         return match s.texts("factor").last() {
-            Some(factor) => Err(Error::usage("factor", *factor, "is for a `preset`")),
+            Some(factor) => Err(Error::usage("factor", *factor, "is for a `preset`, and there is none; omit it")),
             None => Ok(None),
         };
     }

@@ -539,12 +539,12 @@ fn bad_skeletons_and_handles_are_named() {
     let spline = [("along", "0,0 50,20 100,0"), ("spline", "2")];
     let none = r#"{"points":[null,null,null]}"#;
     for (args, json, problem) in [
-        (&spline[..], r#"{"points":[[0,-9],[0,0],null]}"#, "vanishes, of point 2"),
+        (&spline[..], r#"{"points":[[0,-9],[0,0],null]}"#, "without length at point 2"),
         (&spline, r#"{"points":[null]}"#, "for 1 points"),
         (&spline, r#"{"points":[null,null,null],"pieces":[]}"#, "either `pieces` or"),
         (&spline[..1], none, "needs `spline` or `interpolate`"),
         (&[spline[0], spline[1], ("reverse", "true")], none, "the other way"),
-        (&[("along", "M0,0 Q50,20 100,0")], r#"{"pieces":[{"levels":[[[0,0],[1,1]]]}]}"#, "vanishes, of piece 1"),
+        (&[("along", "M0,0 Q50,20 100,0")], r#"{"pieces":[{"levels":[[[0,0],[1,1]]]}]}"#, "without length at piece 1"),
     ] {
         let e = with_handles(args, json).err().unwrap().to_string();
         assert!(e.contains(problem), "{e}");

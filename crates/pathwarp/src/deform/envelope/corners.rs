@@ -150,7 +150,7 @@ fn given_corners(sub: &Subpath, corners: &Corners, bounds: Rect) -> Result<[Loca
             let text = nodes.map(|n| n.to_string()).join(",");
             let count = sub.segs.len();
             if let Some(bad) = nodes.iter().find(|n| !(1..=count).contains(n)) {
-                let problem = format!("has node {bad}, which is not there: the path has nodes 1 to {count}");
+                let problem = format!("names node {bad}, which the path lacks: it has nodes 1 to {count}");
                 return Err(Error::usage("corners", text, problem));
             }
             (nodes.map(|n| (n - 1, 0.0)), text)

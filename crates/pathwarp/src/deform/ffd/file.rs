@@ -77,7 +77,7 @@ pub(super) fn read(name: &str, text: &str, frame: Rect) -> Result<(Lattice, bool
                 _ => return Err(wrong(format!("point {i} of row {j} has {} numbers: x, y or x, y, weight", p.len()))),
             };
             if [x, y, w].iter().any(|v| v.abs() > 1e100) {
-                return Err(wrong(format!("point {i} of row {j} is larger than 1e100")));
+                return Err(wrong(format!("point {i} of row {j} has a number larger than 1e100")));
             }
             lattice.place(i, j, Point::new(x, y));
             lattice.set_weight(i, j, w);

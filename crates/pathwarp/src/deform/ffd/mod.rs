@@ -233,7 +233,11 @@ impl Ffd {
     fn apply_pins(&self, l: &mut Lattice, warnings: &mut Vec<String>) -> Result<(), Error> {
         let shown = |(p, q): &(Point, Point)| format!("{}:{}", show(*p), show(*q));
         if let Some(extra) = self.pins.get(MAX_PINS) {
-            return Err(Error::usage("pin", shown(extra), format!("is one too many: {MAX_PINS} pins at most")));
+            return Err(Error::usage(
+                "pin",
+                shown(extra),
+                format!("is one pin too many; at most {MAX_PINS} are possible"),
+            ));
         }
         let r = l.region();
         let in_region = |p: Point| (r.x0..=r.x1).contains(&p.x) && (r.y0..=r.y1).contains(&p.y);
@@ -500,7 +504,7 @@ pub(super) fn changes<'a, const N: usize>(
             let change = match name {
                 "at" => Change::Place(s.point_in(name, value)?),
                 "move" => {
-                    let wrong = || Error::usage(name, text, "does not end with a shift DX,DY");
+                    let wrong = || Error::usage(name, text, "does not end with a shift DX,DY, such as 10,-5");
                     let (x, y) = value.split_once(',').ok_or_else(wrong)?;
                     Change::Shift(Vec2::new(s.length_in(name, x, Axis::X)?, s.length_in(name, y, Axis::Y)?))
                 }
@@ -529,7 +533,7 @@ fn frozen(s: &Settings<'_>) -> Result<[usize; 4], Error> {
         let side = SIDES.iter().position(|n| *n == name);
         let side =
             side.ok_or_else(|| wrong("is not SIDE:COUNT with a side left, right, top or bottom, such as left:2"))?;
-        counts[side] = count.parse().map_err(|_| wrong("does not end with a number"))?;
+        counts[side] = count.parse().map_err(|_| wrong("does not end with a whole number, such as left:2"))?;
     }
     Ok(counts)
 }

@@ -92,7 +92,7 @@ pub(super) fn read_psd(file: &NamedText, layer: Option<&str>, region: Rect) -> R
     let mut chosen = warps.into_iter().filter(|w| layer.map_or(w.style != "warpNone", |l| w.layer == l));
     let warp = match (chosen.next(), chosen.next()) {
         (Some(one), None) => one,
-        (None, _) if all.is_empty() => return Err(wrong("has no layer with a warp".into())),
+        (None, _) if all.is_empty() => return Err(wrong("has no warped layer".into())),
         (None, _) => return Err(wrong(format!("has no such warped layer; there are {all}"))),
         (Some(_), Some(_)) => return Err(wrong(format!("has several warped layers; choose one with `layer`: {all}"))),
     };

@@ -77,15 +77,17 @@ impl Quilt {
         let width = points.first().map_or(0, Vec::len);
         let columns = patches(width).ok_or_else(|| wrong(format!("has {width} points in a row; {allowed}")))?;
         if let Some(j) = points.iter().position(|r| r.len() != width) {
-            return Err(wrong(format!("row {j} has {} points, row 0 has {width}", points[j].len())));
+            return Err(wrong(format!("row {j} has {} points, but row 0 has {width}", points[j].len())));
         }
         if points.iter().flatten().any(|p| !(p.x.abs() < 1e100 && p.y.abs() < 1e100)) {
-            return Err(wrong("has a point larger than 1e100".into()));
+            return Err(wrong("has a point with a coordinate larger than 1e100".into()));
         }
         let shares = |given: Option<Vec<f64>>, n: usize, axis: &str| {
             with_ends(given, n).ok_or_else(|| {
                 let inner = n - 1;
-                wrong(format!("its `{axis}` must be {inner} rising number(s) between 0 and 1, where {n} patches meet"))
+                wrong(format!(
+                    "its `{axis}` is not a rising list of the places between 0 and 1 where {n} patches meet; it takes {inner}"
+                ))
             })
         };
         let (x, y) = (shares(x, columns, "x")?, shares(y, rows, "y")?);

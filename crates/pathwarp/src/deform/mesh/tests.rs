@@ -124,7 +124,7 @@ fn photoshops_warps_are_the_styles_and_nets() {
     let fault = |r: Result<Built, Error>| r.map(|_| ()).unwrap_err().to_string();
     assert!(fault(with("psd", &psd("warpCylinder", ""), &[])).contains("warpCylinder"));
     assert!(fault(with("psd", &psd("warpArc", ""), &[("layer", "Other")])).contains("`Logo`"));
-    assert!(fault(with("psd", "{ \"warps\": [] }", &[])).contains("no layer"));
+    assert!(fault(with("psd", "{ \"warps\": [] }", &[])).contains("no warped layer"));
 }
 
 /// A file written by hand has one warp, with the keys of Photoshop's descriptors that are not zero.

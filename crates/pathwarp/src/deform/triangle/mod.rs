@@ -164,7 +164,9 @@ move it nearer to the side between them",
             Change::Place(p) => net.moves[index(node)] = p - regular_point(net.corners, node),
             Change::Shift(v) => net.shift(node, v),
             Change::Weight(w) if w > 0.0 && w <= 1e6 => net.set_weight(node, w),
-            Change::Weight(_) => return Err(wrong("has a weight out of range: above 0, up to a million".into())),
+            Change::Weight(_) => {
+                return Err(wrong("has a weight out of range; weights are above 0 and at most a million".into()));
+            }
         }
         Ok(())
     }

@@ -128,7 +128,9 @@ impl WordArt {
         let padded = self.padded(placed_guides()?, &cuts, shape_box)?;
         let rows = padded.rows(placed_guides()?, &cuts, shape_box, &mut built)?;
         let map = rows.and_then(|rows| Tiled::over(padded.frame, cuts, rows));
-        let map = map.ok_or_else(|| wrong("has a guide without length in this box: adjust it less far".into()))?;
+        let map = map.ok_or_else(|| {
+            wrong("has a guide that shrinks to a point in this box; choose an `adj` nearer to its default".into())
+        })?;
         built.map = anchors::settled(map, *rect);
         Ok(built)
     }
@@ -278,7 +280,8 @@ impl WordArt {
         }
         let count = bands - 1;
         let text = split.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-        let problem = format!("must be {count} height(s) between {} and {}, rising, for this shape", rect.y0, rect.y1);
+        let problem =
+            format!("is not a rising list of heights between {} and {}; this shape takes {count}", rect.y0, rect.y1);
         Err(Error::usage("split", text, problem))
     }
 }
@@ -286,7 +289,11 @@ impl WordArt {
 /// Returns the error for an adjust value that the shape does not have.
 fn no_adjust_value(shape: &TextShape, text: &str) -> Error {
     let known: Vec<&str> = shape.adj.iter().map(|a| a.name.as_str()).collect();
-    Error::usage("adj", text, format!("is not an adjust value of {}: {}", shape.name, known.join(", ")))
+    Error::usage(
+        "adj",
+        text,
+        format!("sets no adjust value of {}; its adjust values are {}", shape.name, known.join(", ")),
+    )
 }
 
 fn outline(segs: &[Seg]) -> Outline {
