@@ -118,7 +118,7 @@ fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
     let all = objects(&drawing, &stage.limits())?;
     let ids = warped_targets(stage, &all)?;
     if call.is_on(SHOW) {
-        anstream::eprintln!("{}", readable::message(&settings(&all, &ids)));
+        anstream::eprintln!("{}", readable::safe_message(&settings(&all, &ids)));
         return Ok(String::new());
     }
     let Restoration { mut svg, objects: restored } = restore(stage, &drawing, &ids, call.is_on(DISCARD))?;

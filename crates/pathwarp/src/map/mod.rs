@@ -157,7 +157,7 @@ pub use projective::AffineMap;
 pub use rational_bezier::{RationalBezier, exact_images};
 pub use real::{Dual, Real};
 
-pub(crate) use curves::{Along, Guide, increasing_root};
+pub(crate) use curves::{Guide, GuidePace, increasing_root};
 pub(crate) use local::Local;
 pub(crate) use newton::{INVERSE_WORK, inverse_of};
 pub(crate) use patch::{Patch, powers};
