@@ -91,7 +91,7 @@ impl PixelArea {
 
 /// Prepares `inverse`, a cache, for the traces of `areas` and of their parts, one size after the other. Calls `announce_pixels` with the
 /// pixels of the smallest parts that cannot be traced.
-pub(super) fn announce(
+pub(super) fn prepare_traces(
     mut areas: Vec<PixelArea>,
     basis: &ChebyshevBasis,
     (shown, then): (Affine, Affine),
@@ -100,7 +100,8 @@ pub(super) fn announce(
 ) {
     while !areas.is_empty() {
         let samples: Vec<Point> = areas.iter().flat_map(|a| a.samples(basis, shown)).collect();
-        inverse.prepare(&samples, &[]);
+        let no_jets = &[];
+        inverse.prepare(&samples, no_jets);
         areas.retain(|a| a.trace(basis, shown, inverse, then).is_none());
         let (divided, smallest): (Vec<_>, Vec<_>) = areas.into_iter().partition(|a| a.width.max(a.height) > MIN_TILE);
         announce_pixels(&smallest.iter().flat_map(|a| a.pixels(shown)).collect::<Vec<_>>());
@@ -190,7 +191,7 @@ impl SourceBlock {
     /// all in the block.
     #[inline(always)]
     pub(super) fn firsts(&self, left: &[f32; TILE], top: &[f32; TILE], side: usize, layout: ChannelOrder) -> Firsts {
-        // At this magnitude the last bit has the value 1, so the low bits hold the integer that was added.
+        // A whole number (as `left` and `top` are) that is added to this one is found in the low bits of the float.
         const WHOLE: f32 = (1_u32 << 23) as f32;
         let [max_left, max_top] = self.size.map(|n| n as f32 - side as f32);
         let stride = (self.size[0] * BYTES) as u32;
