@@ -29,7 +29,6 @@ use serde::{Deserialize, Serialize};
 use std::path::{Component, Path, PathBuf};
 use toml::Value;
 
-/// The version of the format.
 const VERSION: i64 = 1;
 
 /// Keys of a step that, like [`INVERSE`], are not parameters of its deformation.

@@ -343,8 +343,8 @@ fn check_placement(placement: &Placement, i: usize, is_first: bool, step: &Step)
 }
 
 impl BuiltRecipe {
-    /// Returns the outlines, in the source and by the even-odd rule, of what lies behind other parts of the artwork in a step's image, within
-    /// `tolerance` there. `None` if no step hides anything, and after steps that do more than an affine map.
+    /// Returns the outlines, in the source and by the even-odd rule, of what lies behind other parts of the artwork in a step's image,
+    /// within `tolerance` there. `None` if no step hides anything, and after steps that do more than an affine map.
     #[must_use]
     pub fn hidden(&self, tolerance: f64) -> Option<Outline> {
         let step = self.steps.iter().position(|s| s.hidden.is_some())?;

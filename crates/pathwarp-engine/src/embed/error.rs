@@ -74,7 +74,7 @@ impl Error {
     }
 
     /// Adds the parameter or option concerned, and its value.
-    pub(super) fn about(mut self, parameter: &str, value: &str) -> Self {
+    pub(super) fn with_parameter(mut self, parameter: &str, value: &str) -> Self {
         self.details.parameter.get_or_insert_with(|| parameter.to_owned());
         self.details.value.get_or_insert_with(|| value.to_owned());
         self

@@ -174,8 +174,8 @@ fn meetings(all: &[Contour], near: f64) -> impl Iterator<Item = Vec<End>> {
     points.into_iter().map(|(_, ends)| ends)
 }
 
-/// Links ends that meet in pairs, unless (without `even_if_odd`) an odd number of different lines meets. A line of one segment is not linked
-/// to itself. Returns the ends of a lone line.
+/// Links ends that meet in pairs, unless (without `even_if_odd`) an odd number of different lines meets. A line of one segment is not
+/// linked to itself. Returns the ends of a lone line.
 fn link_in_pairs(all: &[Contour], ends: Vec<End>, near: f64, even_if_odd: bool, links: &mut Links) -> Vec<End> {
     /// Ends at one point, above which the lines are not meant as contours.
     const MOST_ENDS: usize = 100;

@@ -3,7 +3,7 @@
 use super::image_warp::{ImageWarp, composed};
 use super::rows::{self, TileMethod};
 use super::sample::{self, Pyramid};
-use super::tile::{BYTES, BitmapBytes, MIN_TILE, PixelArea, SourceBlock, TILE, prepare_traces};
+use super::tile::{BYTES, BitmapBytes, MIN_TILE, PixelArea, SourceBlock, TILE, announce};
 use super::trace::{ChebyshevBasis, Trace};
 use crate::error::Error;
 use crate::pixmap::{bytes, for_each_chunk, new_pixmap};
@@ -85,9 +85,7 @@ impl<'a> ImagePainter<'a> {
     /// Caches the values of the inverse for these tiles, computed in batches.
     fn cache(&self, tiles: Vec<PixelArea>) -> Gathered<'a> {
         let cache = Gathered::new(self.warp.inverse);
-        prepare_traces(tiles, &self.basis, (self.warp.shown, self.to_source), &cache, |pixels| {
-            cache.prepare(&[], pixels)
-        });
+        announce(tiles, &self.basis, (self.warp.shown, self.to_source), &cache, |pixels| cache.prepare(&[], pixels));
         cache
     }
 

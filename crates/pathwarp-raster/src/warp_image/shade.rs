@@ -1,7 +1,7 @@
 //! Warps a paint: the inverse map gives every pixel of the result its position in the paint.
 
 use super::grid_inverse::GridInverse;
-use super::tile::{MIN_TILE, PixelArea, TILE, prepare_traces};
+use super::tile::{MIN_TILE, PixelArea, TILE, announce};
 use super::trace::{ChebyshevBasis, MAX_ERROR};
 use crate::error::Error;
 use crate::pixmap::{for_each_chunk_pair, new_pixmap};
@@ -131,7 +131,7 @@ impl<'a> ShadePainter<'a> {
     /// Caches the values of the inverse for these blocks, computed in batches. Painting needs no jets.
     fn cache(&self, blocks: Vec<PixelArea>) -> Gathered<'a> {
         let cache = Gathered::new(self.shade.inverse);
-        prepare_traces(blocks, &self.basis, (self.shade.shown, self.to_trace), &cache, |pixels| {
+        announce(blocks, &self.basis, (self.shade.shown, self.to_trace), &cache, |pixels| {
             cache.prepare(pixels, &[]);
         });
         cache

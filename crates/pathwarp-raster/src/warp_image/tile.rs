@@ -89,9 +89,9 @@ impl PixelArea {
     }
 }
 
-/// Prepares `inverse`, a cache, for the traces of `areas` and of their parts, one size after the other. Calls `announce_pixels` with the
-/// pixels of the smallest parts that cannot be traced.
-pub(super) fn prepare_traces(
+/// Prepares `inverse`, a cache, for the traces of `areas` and of their parts, one size after the other; traces need no jets. Calls
+/// `announce_pixels` with the pixels of the smallest parts that cannot be traced.
+pub(super) fn announce(
     mut areas: Vec<PixelArea>,
     basis: &ChebyshevBasis,
     (shown, then): (Affine, Affine),
@@ -100,8 +100,7 @@ pub(super) fn prepare_traces(
 ) {
     while !areas.is_empty() {
         let samples: Vec<Point> = areas.iter().flat_map(|a| a.samples(basis, shown)).collect();
-        let no_jets = &[];
-        inverse.prepare(&samples, no_jets);
+        inverse.prepare(&samples, &[]);
         areas.retain(|a| a.trace(basis, shown, inverse, then).is_none());
         let (divided, smallest): (Vec<_>, Vec<_>) = areas.into_iter().partition(|a| a.width.max(a.height) > MIN_TILE);
         announce_pixels(&smallest.iter().flat_map(|a| a.pixels(shown)).collect::<Vec<_>>());
@@ -116,7 +115,6 @@ const MAX_BLOCK: usize = 160;
 /// Sample points along a side of a tile for finding its part of the source.
 const PER_SIDE: usize = 5;
 
-/// The bytes of a bitmap.
 #[derive(Clone, Copy)]
 pub(super) struct BitmapBytes<'a> {
     pub(super) data: &'a [u8],

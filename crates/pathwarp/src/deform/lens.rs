@@ -181,9 +181,8 @@ struct LensMap {
     center: Point,
     from: LensModel,
     to: LensModel,
-    /// The focal length f.
+    /// The focal lengths f and f'.
     focal: f64,
-    /// The focal length f'.
     new_focal: f64,
 }
 
@@ -225,7 +224,7 @@ impl Formula for LensMap {
     fn creases(&self, out: &mut Creases) {
         let (max_radius, center) = (self.max_radius(), self.center);
         if max_radius.is_finite() && self.from != self.to {
-            // The domain is inside the circle, which the negative radius says.
+            // The negative radius puts the domain inside the circle.
             out.push(Crease::edge(Level::Circle { center, radius: -max_radius }));
         }
     }

@@ -110,7 +110,6 @@ fn no_image(name: &str, what: &str, DVec3 { x, y, z }: DVec3) -> Failure {
     ))
 }
 
-/// Formats a point for a message.
 fn coordinates(p: DVec3) -> String {
     format!("{:.6},{:.6},{:.6}", p.x, p.y, p.z)
 }

@@ -204,8 +204,8 @@ impl Setting<'_> {
         Ok(Drawn { svg, warnings: badge.warnings, missing: badge.missing })
     }
 
-    /// Returns the colour, and the page with its margin. Without `--margin`, only a drawing for display has one: it is written to a file, not
-    /// as DXF, and its size has no unit.
+    /// Returns the colour, and the page with its margin. Without `--margin`, only a drawing for display has one: it is written to a
+    /// file, not as DXF, and its size has no unit.
     fn page(&self, fill: Option<String>, target: Option<&Path>) -> Result<LetteringOptions, Failure> {
         const MARGIN: f64 = 0.06;
         let is_shown =
@@ -217,7 +217,6 @@ impl Setting<'_> {
     }
 }
 
-/// Unites the lettering to one shape.
 fn united(registry: &Registry, svg: String, m: &ArgMatches) -> Result<String, Failure> {
     let mut unite = Warper::edit(registry, "unite", &[("by", "all")]).map_err(|e| Failure::usage(e.to_string()))?;
     if let Some(tolerance) = m.get_one::<String>("tolerance") {

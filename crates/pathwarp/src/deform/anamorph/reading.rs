@@ -137,7 +137,6 @@ impl<'t> Words<'t> {
         if v > 0.0 && v < 1e9 { Ok(Some(v)) } else { Err(self.wrong(format!("has a {name} that is not positive"))) }
     }
 
-    /// Reads the radius or the diameter.
     fn radius(&self, s: &Settings<'_>) -> Result<f64, Error> {
         self.radius_at(s, "radius", "diameter")
     }

@@ -149,7 +149,7 @@ impl Envelope {
         corners(points: [impl Into<Point>; 4]) => corners: Some(Corners::Points(points.map(Into::into)));
         /// Sets the corners of a closed path by the numbers of its nodes, from 1.
         corner_nodes(nodes: [usize; 4]) => corners: Some(Corners::Nodes(nodes));
-        /// Says that the artwork is lettering, which has stems to be kept upright.
+        /// Sets `true` for lettering, which has stems to be kept upright.
         lettering(lettering: bool);
         /// Gives the letters of the artwork, which may be several lines.
         letters(letters: impl Into<Arc<[Letter]>>) => letters: letters.into(), lettering: true;
@@ -360,7 +360,6 @@ const SIN_45: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Envelope::read(s)?.build());
 
-/// Reads the curves of the sides.
 fn curves(s: &Settings<'_>) -> Result<[Option<NamedPath>; 4], Error> {
     let [bottom, right, top, left] = SIDES.map(|name| s.path_if(name));
     Ok([bottom?, right?, top?, left?])
