@@ -55,7 +55,7 @@ pub(super) fn map_command(registry: &Registry) -> Command {
     let all = switch("all", "Print all points that the maps of steps with --inverse lead back to").requires(INVERSE);
     let frame_and_all = [frame, all.conflicts_with("jacobian")];
     for info in registry.infos() {
-        let command = Command::new(info.name).aliases(steps::aliases(info.name)).about(info.title);
+        let command = Command::new(info.name).aliases(steps::alias(info.name)).about(info.title);
         let command = command.args(steps::args(info)).args(points_args()).args(frame_and_all.clone());
         c = c.subcommand(command.args(exact::args()));
     }

@@ -47,7 +47,7 @@ export class Handles {
   /** Handles of numbers. */
   private dials: Dial[] = [];
   /** A path of the drawing that a parameter referred to before its line was dragged. */
-  released: string | null = null;
+  freedPath: string | null = null;
   /** Indices of the control points of nets that have been moved, by parameter. */
   private moved: Record<string, Set<number>> = {};
 
@@ -431,7 +431,7 @@ export class Handles {
     else {
       const before = this.step.args[name] ?? [];
       this.step.args[name] = valuesOf(param, grip, this.frame, before);
-      this.released ??= before.find((value) => value.startsWith("#")) ?? null;
+      this.freedPath ??= before.find((value) => value.startsWith("#")) ?? null;
     }
   }
 

@@ -65,7 +65,7 @@ export class Pointing {
   private press(e: PointerEvent): void {
     const { stage } = this;
     const target = e.target as Element;
-    // `onPick` is set while a path is asked for, `isBefore` while no steps are shown; `picksParts` and `selects` are modes.
+    // `onPick` is set while a path is asked for, `isBefore` while no steps are shown.
     if (stage.onPick) return stage.pickAt(e);
     this.down.set(e.pointerId, stage.point(e));
     if (this.down.size > 2) return;
@@ -80,7 +80,7 @@ export class Pointing {
     else if (this.modes.picksParts && bends) this.pan(e, () => stage.pickPartAt(e));
     else if (part && bends) this.transform(e, stage.selection.transform(part, stage.point(e)));
     else if (bends && !e.shiftKey && stage.selection.holds(stage.point(e))) this.transform(e, translation(stage.point(e)), () => stage.select([]));
-    else if (bends && (e.shiftKey || stage.selects)) this.frame(e);
+    else if (bends && (e.shiftKey || stage.isSelecting)) this.frame(e);
     else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage.select([]));
   }
 

@@ -163,7 +163,9 @@ impl Warper {
         for (param, value) in values {
             let (param, value) = (param.as_ref(), value.as_ref());
             let Some(declared) = info.params.iter().find(|p| p.name == param) else {
-                return Err(Error::usage(format!("{name}: {}", unknown(info.params, param))).about(param, value));
+                return Err(
+                    Error::usage(format!("{name}: {}", unknown(info.params, param))).with_parameter(param, value)
+                );
             };
             if declared.kind == Kind::Save {
                 return Err(Error::usage(format!("{param} writes a file, which only the program does")));
@@ -189,7 +191,7 @@ impl Warper {
     /// # Errors
     /// [`Usage`](super::ErrorKind::Usage) if the option is unknown or only for the program, or if the value is wrong.
     pub fn set_option(&mut self, name: &str, value: &str) -> Result<(), Error> {
-        let about = |e: Error| e.about(name, value);
+        let about = |e: Error| e.with_parameter(name, value);
         check_option(name).map_err(|e| about(Error::usage(e)))?;
         let mut given = self.given.clone();
         given.set(name, value).map_err(|e| about(Error::usage(e)))?;

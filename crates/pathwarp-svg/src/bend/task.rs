@@ -30,8 +30,8 @@ pub(super) struct PartContext<'a> {
     pub(super) drawing: &'a Drawing,
     /// Root user space to px.
     pub(super) to_px: Affine,
-    /// Number of gradients in the drawing that may become pictures.
-    pub(super) gradients: usize,
+    /// Number of gradients in the drawing that may become pictures, which share a budget of pixels.
+    pub(super) gradient_count: usize,
     /// Largest width of a hairline, in root user units; 0 if the page is not measured in physical units.
     pub(super) hairline: f64,
 }
