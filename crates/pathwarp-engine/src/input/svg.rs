@@ -239,8 +239,7 @@ impl SvgArtwork {
         Ok((options, warped, tolerance))
     }
 
-    /// Returns the options for a part of the drawing: small contours have smaller tolerances if `request.suited`, and `request.same_view`
-    /// leaves the viewBox for an editor, which shows the result on the page of the source.
+    /// Returns the options for a part of the drawing.
     fn warp_options(&self, request: &WarpRequest<'_>, part: usize, built: &BuiltRecipe) -> WarpOptions {
         let WarpRequest { options, tolerance, .. } = request;
         let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_budget(self.doc.budget().clone());
@@ -372,7 +371,7 @@ impl SvgArtwork {
         options: &WarpOptions,
         warped: &WarpedDocument,
     ) -> Result<(HashMap<&str, Fold>, Vec<String>), Error> {
-        // Parts that are turned over lie behind others, and are cut away.
+        // What would overlap in a view in space lies behind other parts, and is cut away.
         if options.hidden.is_some() {
             return Ok((HashMap::new(), Vec::new()));
         }
@@ -386,7 +385,7 @@ impl SvgArtwork {
         }
         let pictures = self.picture_orientations(part, built, options)?;
         all = pictures.iter().fold(all, |all, (_, o)| all.and(o));
-        // Folds are relative to the orientation of most of the artwork, or to the one of the corners of its box.
+        // Folds count against the orientation of most of the artwork, or against the unturned one if the corners of its box keep that.
         all = self.bounding_box(Which::Part(part)).map_or(all, |bounds| all.usual(&built.map, bounds));
         let (mut out, mut warnings) = (HashMap::new(), Vec::new());
         let placement = &built.placement;
