@@ -341,9 +341,9 @@
     return whole > 0 ? percent(100 * value / whole) : short(value);
   }
   function pathData(subpaths) {
-    return subpaths.map(({ start, segments, closed: closed2 }) => {
+    return subpaths.map(({ start, segments, closed }) => {
       const body = segments.map((seg) => (seg.length === 2 ? "L" : "C") + pairs(seg));
-      return `M${pairs(start)} ${body.join(" ")}${closed2 ? " Z" : ""}`;
+      return `M${pairs(start)} ${body.join(" ")}${closed ? " Z" : ""}`;
     }).join(" ");
   }
   function pairs(numbers) {
@@ -552,7 +552,7 @@
     for (let row = points; row.length > 1; rows.push(row)) row = row.slice(1).map((p, i) => mix(row[i], p, t));
     return rows;
   }
-  function closed(sub) {
+  function withClosingLine(sub) {
     const last = sub.segments[sub.segments.length - 1];
     const isOpen = last && Math.hypot(end(last)[0] - sub.start[0], end(last)[1] - sub.start[1]) > 1e-9;
     if (sub.closed && isOpen) sub.segments.push([...sub.start]);
@@ -651,7 +651,7 @@
         if (name === this.deformation.gallery?.bend && grip.value !== void 0) this.addBend(name, grip);
         if (name === "radius" && grip.value !== void 0 && this.grips.center?.point) this.addRadius(name, grip);
         if (grip.circle) this.addCircle(name, grip);
-        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? closed(sub) : sub, `${i}.${j}`)));
+        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? withClosingLine(sub) : sub, `${i}.${j}`)));
       }
       const isAnamorphosis = this.grips.eye || this.grips["eye-height"];
       this.dials = this.handles.every(({ param }) => param === "about") ? dials(this) : isAnamorphosis ? inSpace(this) : [];
@@ -4623,9 +4623,9 @@
       const text = (p) => p.map(short).join(",");
       const isNear = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < SAME_POINT * stage2.camera.pixel;
       const userPoint = (e) => stage2.camera.toUser(stage2.point(e));
-      const path = (closed2) => {
+      const path = (closed) => {
         if (kind === "round") return points.length < 3 ? null : smoothRing(points, text);
-        return points.length < 2 ? null : `M${points.map(text).join(" L")}${closed2 ? " Z" : ""}`;
+        return points.length < 2 ? null : `M${points.map(text).join(" L")}${closed ? " Z" : ""}`;
       };
       const isClicked = kind === "path" || kind === "round";
       stage2.svg.addEventListener("pointerdown", (e) => {

@@ -212,7 +212,7 @@ impl EditedArtwork {
 
     /// Turns a failure into a sentence in the page's terms.
     fn explained<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
+        result.map_err(|f| self.names.without_options(&f.message(&self.flags)))
     }
 }
 
@@ -331,7 +331,7 @@ impl Artwork for EditedArtwork {
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
         let bent = self.bend_version(recipe, fineness);
         let mut bent = self.explained(bent)?;
-        bent.warnings.iter_mut().for_each(|w| *w = self.names.plain(w));
+        bent.warnings.iter_mut().for_each(|w| *w = self.names.without_options(w));
         Ok(bent)
     }
 
@@ -344,7 +344,7 @@ impl Artwork for EditedArtwork {
     ) -> Result<(Vec<u8>, Vec<String>), String> {
         let written = Self::written(self, recipe, to, stays, picture);
         let (bytes, warnings) = self.explained(written)?;
-        Ok((bytes, warnings.iter().map(|w| self.names.plain(w)).collect()))
+        Ok((bytes, warnings.iter().map(|w| self.names.without_options(w)).collect()))
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
@@ -451,7 +451,7 @@ impl EngineHost {
 
     /// Turns a failure into a sentence in the page's terms.
     fn explained<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
+        result.map_err(|f| self.names.without_options(&f.message(&self.flags)))
     }
 }
 

@@ -16,7 +16,7 @@ use crate::ending::Status;
 use crate::plugins;
 use guides::sorted;
 use line::{
-    change, check_recipe, exclusions, referred, with_frame, with_ids, without_missing, words_of_deformation,
+    change, check_recipe, exclusions, referred, with_ids, with_resulting_frame, without_missing, words_of_deformation,
     words_of_options,
 };
 use names::{ADD, AGAIN, CHAIN, CHANGES, DISCARD, REPLACE, SHOW, is_job, joined, split};
@@ -89,16 +89,16 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
     let mut line: Vec<String> = std::iter::once(name.to_owned()).chain(given).chain(sorted.words()).collect();
     line = with_ids(line, &all);
     line.extend(words_of_options(call));
-    // On the whole page, locked objects are excluded.
-    let is_whole_page = call.ids.is_empty();
-    if is_whole_page {
+    // Without a selection, locked objects are excluded.
+    let takes_all = call.ids.is_empty();
+    if takes_all {
         line.extend(exclusions(&all));
     }
-    let outcome = stage.warp(&svg, &line, &Scope { ids: if is_whole_page { &[] } else { &sorted.artwork } }, None)?;
-    stage.check(&svg, &outcome)?;
+    let outcome = stage.warp(&svg, &line, &Scope { ids: if takes_all { &[] } else { &sorted.artwork } }, None)?;
+    stage.report_left_out(&svg, &outcome)?;
 
     let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
-    let recipe = joined(&with_frame(stage, line, &outcome));
+    let recipe = joined(&with_resulting_frame(stage, line, &outcome));
     let result = with_sources(stage, &svg, &outcome.svg, &sorted.artwork, &recipe, &guides)?;
     with_changes_by_hand(stage, &drawing, result, &restored)
 }
@@ -140,8 +140,8 @@ fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
         };
         let copies = GuidePaths { guides: &guides, has: &|id| !all.iter().any(|o| o.id == id) };
         let outcome = stage.warp(&svg, &line, &Scope { ids: &ids }, Some(&copies))?;
-        stage.check(&svg, &outcome)?;
-        let recipe = joined(&with_frame(stage, line, &outcome));
+        stage.report_left_out(&svg, &outcome)?;
+        let recipe = joined(&with_resulting_frame(stage, line, &outcome));
         svg = with_sources(stage, &svg, &outcome.svg, &ids, &recipe, &guides)?;
     }
     with_changes_by_hand(stage, &drawing, svg, &restored)

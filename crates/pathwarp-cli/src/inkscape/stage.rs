@@ -110,7 +110,7 @@ impl Stage<'_> {
     }
 
     /// Reports objects that were left out: as an error if nothing else happened, else on request.
-    pub(super) fn check(&self, before: &str, outcome: &Outcome) -> Result<(), Failure> {
+    pub(super) fn report_left_out(&self, before: &str, outcome: &Outcome) -> Result<(), Failure> {
         if outcome.partial && outcome.svg == before {
             return Err(Failure::Geometry(outcome.remarks.join("\n")));
         }

@@ -5,7 +5,7 @@ import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
 import { dials, type Dial } from "./dials";
 import { called, words } from "./names";
 import { inSpace } from "./space";
-import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
+import { drop, end, middle, nearest, raised, split, type Spot, withClosingLine } from "./knots";
 
 /** A point on a path of a parameter; `id` is the indices of the path and of its subpath, as in keys of handles. */
 interface PathHit {
@@ -71,7 +71,7 @@ export class Handles {
       if (name === this.deformation.gallery?.bend && grip.value !== undefined) this.addBend(name, grip);
       if (name === "radius" && grip.value !== undefined && this.grips.center?.point) this.addRadius(name, grip);
       if (grip.circle) this.addCircle(name, grip);
-      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? closed(sub) : sub, `${i}.${j}`)));
+      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? withClosingLine(sub) : sub, `${i}.${j}`)));
     }
     // The fixed point of a rotation or scaling has no effect alone, so dials are added.
     const isAnamorphosis = this.grips.eye || this.grips["eye-height"];

@@ -205,7 +205,7 @@ pub(crate) struct Slot {
     pub(crate) frame: Affine,
     /// Area to fit, in the slot's coordinates.
     pub(crate) area: Rect,
-    /// `true` if the fit is applied outside of the group's transform, `false` if inside.
+    /// `true` if the fit is applied outside of the group's transform, so that the slot's coordinates are not those of the group's filters.
     pub(crate) fits_outside: bool,
     /// The element whose `transform` takes the fit.
     pub(crate) element: Option<ElementId>,

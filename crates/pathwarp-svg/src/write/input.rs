@@ -96,7 +96,7 @@ impl<'a> WriteInput<'a> {
         self.outcomes[parts].iter().any(|o| o.warped().is_some())
     }
 
-    /// The frame in the result of an object that moves along with its slot.
+    /// The frame (from an object's coordinates to root user space) in the result, of an object that moves along with its slot.
     pub(super) fn written(&self, slot: Option<usize>, frame: Affine) -> Affine {
         frame_in_result(self.scene, self.slots, slot, frame)
     }

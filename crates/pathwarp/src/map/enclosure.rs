@@ -99,7 +99,7 @@ impl Enclosure {
 
     /// The size of the smallest feature of a curve, as a share of its parameter range: the largest r with coefficient k at most the first
     /// one times r¹⁻ᵏ.
-    pub(crate) fn finest([x, y]: &[Self; 2]) -> f64 {
+    pub(crate) fn finest_share([x, y]: &[Self; 2]) -> f64 {
         let d = |k: usize| x.d[k] + y.d[k];
         (1..ORDER).map(|k| (d(0) / d(k)).powf(1.0 / k as f64)).fold(f64::INFINITY, f64::min)
     }

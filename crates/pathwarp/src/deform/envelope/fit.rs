@@ -83,7 +83,7 @@ pub(in crate::deform) fn fit(frame: Rect, ring: &Ring, keep: Keep, spread: Optio
     let s = map.sides();
     built.explanation.warnings.extend(crossings([&s.bottom, &s.right, &s.top, &s.left]));
     built.explanation.warnings.extend(fold_warning(&map, from_unit));
-    built.map = anchors::settled(map.simplest(), frame);
+    built.map = anchors::simplified(map.simplest(), frame);
     Ok(built)
 }
 
