@@ -95,6 +95,7 @@ fn interpolated(source: &PyramidLevel<'_>, x: f64, y: f64) -> Channels {
 pub(super) struct Footprint {
     /// Direction of the longest axis.
     axis: [f64; 2],
+    /// Lengths of the longest and the shortest axis, in pixels of the source per pixel of the result.
     pub(super) longest: f64,
     shortest: f64,
 }

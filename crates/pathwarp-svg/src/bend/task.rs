@@ -39,8 +39,7 @@ pub(super) struct PartContext<'a> {
 /// The image of an outline in the part's user space as written.
 pub(super) struct BentPath {
     pub(super) path: BezPath,
-    /// The path data of the image if it is already written, because it has arcs, which `path` approximates, or spans of
-    /// several tolerances.
+    /// The path data of the image if it is already written, because it has arcs, which `path` approximates, or several spans.
     pub(super) data: Option<String>,
     pub(super) report: PathReport,
 }
@@ -138,7 +137,7 @@ impl<'a> PartTask<'a> {
         let options = self.refit(self.allowed()).with_spans(self.digits.remaining_for_spans(&spans));
         if let Some(edit) = self.options().edit {
             let tolerances: Vec<f64> = (0..contours.len()).map(|i| self.allowed_of(i)).collect();
-            // An edit that only refits the outline goes on as a map.
+            // Without a result, the edit only refits the outline, as below.
             if let Some(RefittedPath { path, report, .. }) =
                 edit.for_part(self.part).apply(outline, &self.refit(self.allowed()), &tolerances)?
             {

@@ -93,7 +93,7 @@ pub(super) fn lay_out_tiles(
     if !(tiling.is_needed)(painted, area, frame) {
         return None;
     }
-    match tiles_over(b, pattern, area, frame, context) {
+    match pattern_over(b, pattern, area, frame, context) {
         Ok(content) => Some(Tiles { opacity: opacity.get(), content }),
         Err(text) => {
             if let Some(t) = &mut b.tiling {
@@ -105,7 +105,7 @@ pub(super) fn lay_out_tiles(
 }
 
 /// Lays out a pattern over an area. Returns the note for the user if it cannot be laid out.
-fn tiles_over(
+fn pattern_over(
     b: &mut SceneBuilder<'_>,
     pattern: &Arc<usvg::Pattern>,
     area: Rect,
@@ -216,7 +216,7 @@ fn tile_path(b: &mut SceneBuilder<'_>, p: &usvg::Path, to_cell: Affine, layout: 
             _ => continue,
         };
         let is_plain = is_clip || matches!(paint, Paint::Color(_));
-        TilePaint { path: p, kind, is_plain }.lay_out(b, &painted, to_cell, layout, out);
+        TilePaint { path: p, kind, is_plain }.add_parts(b, &painted, to_cell, layout, out);
     }
 }
 
@@ -230,7 +230,7 @@ struct TilePaint<'p> {
 
 impl TilePaint<'_> {
     /// Adds the parts that paint `outline` in all cells.
-    fn lay_out(
+    fn add_parts(
         &self,
         b: &mut SceneBuilder<'_>,
         outline: &Outline,
