@@ -177,11 +177,11 @@ impl EditedArtwork {
             let embedded_recipe = embeds.then(text).transpose()?;
             let request = WarpRequest { recipe, embedded_recipe, ..session.request(svg, &ready)? };
             if format.of_picture(None).is_none() {
-                svg.send(format, to);
+                svg.set_output(format, to);
             }
-            let written = svg.written(&request);
-            svg.send(Format::Svg, Destination::Back);
-            ready.checked(written)
+            let result = svg.result(&request);
+            svg.set_output(Format::Svg, Destination::Back);
+            ready.checked(result)
         })
     }
 

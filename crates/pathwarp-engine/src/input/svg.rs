@@ -151,17 +151,17 @@ impl SvgArtwork {
     }
 
     /// Returns the result in its format, without looking for folds.
-    pub fn written(&self, request: &WarpRequest<'_>) -> Result<export::Exported, Failure> {
+    pub fn result(&self, request: &WarpRequest<'_>) -> Result<export::Exported, Failure> {
         let (_, warped, tolerance) = self.warp_for(request)?;
-        self.exported(warped.svg, request.options, tolerance)
+        self.export(warped.svg, request.options, tolerance)
     }
 
-    fn exported(&self, svg: String, options: &CommonOptions, tolerance: f64) -> Result<export::Exported, Failure> {
+    fn export(&self, svg: String, options: &CommonOptions, tolerance: f64) -> Result<export::Exported, Failure> {
         export::drawing(svg, (self.format, &self.destination), &self.read, options, Some(tolerance))
     }
 
     /// Changes the format and the destination of the result.
-    pub fn send(&mut self, format: Format, destination: Destination) {
+    pub fn set_output(&mut self, format: Format, destination: Destination) {
         (self.format, self.destination) = (format, destination);
     }
 
@@ -648,7 +648,7 @@ impl FileArtwork for SvgArtwork {
                 paths.written(&warped.svg, guides, (self.format, common, tolerance), &mut shapes)?
             }
             None => {
-                let result = self.exported(warped.svg, common, tolerance)?;
+                let result = self.export(warped.svg, common, tolerance)?;
                 (WarpedResult::Bytes(result.bytes), (result.warnings, result.kerf))
             }
         };
