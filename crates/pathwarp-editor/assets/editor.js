@@ -2413,7 +2413,7 @@
     /** Shows the lines to which the handle has snapped, in user units. */
     onSnap = () => {
     };
-    /** Returns the other points to add with a point: its reflection, if symmetry is on. */
+    /** Returns the other points to add with a point: its reflection, if symmetry is on and that is more than `reach` (user units) away. */
     reflections(handles, at, reach) {
       const other = reflection(handles)(at);
       return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
@@ -2448,7 +2448,7 @@
         partner?.set(mirrored(target), this.smooths);
       };
     }
-    /** Returns the point near `to` that is aligned with the frame or another handle; Alt disables that. */
+    /** Returns the point within `reach` (user units) of `to` that is aligned with the frame or another handle; Alt disables that. */
     snapped(to, handle, handles, reach, e) {
       if (!this.snaps || e.altKey || handle.shape === "control") {
         this.onSnap(null, null);

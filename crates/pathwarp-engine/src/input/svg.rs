@@ -272,7 +272,7 @@ impl SvgArtwork {
             .with_filters(filters)
             .with_painter(Some(Painter::new(Arc::clone(&bender))))
             .with_patterns(options.patterns)
-            .with_page(if self.why_page_stays(request).is_some() { PageFit::None } else { options.page })
+            .with_page(if self.reason_to_stay(request).is_some() { PageFit::None } else { options.page })
             .with_same_view(request.same_view)
             .with_grown(self.original.as_ref().and_then(|o| o.grown))
             .with_clones(options.clones)
@@ -307,11 +307,11 @@ impl SvgArtwork {
     }
 
     /// Returns the reason why the page stays although it could grow.
-    fn why_page_stays(&self, request: &WarpRequest<'_>) -> Option<&'static str> {
+    fn reason_to_stay(&self, request: &WarpRequest<'_>) -> Option<&'static str> {
         if request.options.page != PageFit::Auto {
             return None;
         }
-        page::stays(&self.doc, request.options, request.recipe)
+        page::reason_to_stay(&self.doc, request.options, request.recipe)
     }
 
     /// Returns the orientation of every shape of a part under the map.
@@ -612,7 +612,7 @@ impl FileArtwork for SvgArtwork {
             _ => {}
         }
         let (options, mut warped, tolerance) = self.warp_for(request)?;
-        let page = PageNews::take(&mut warped, common.page, self.why_page_stays(request));
+        let page = PageNews::take(&mut warped, common.page, self.reason_to_stay(request));
         let (mut shapes, folds) = self.shape_reports(&built.parts, &options, &warped)?;
         let mut warnings: Vec<String> = warped.warnings.iter().map(ToString::to_string).collect();
         warnings.extend(self.original.iter().flat_map(|o| &o.warnings).cloned());

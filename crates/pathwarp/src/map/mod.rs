@@ -34,7 +34,7 @@
 //!
 //! [`warp_path`]: crate::refit::warp_path
 
-/// Forwards the methods that a [`Map`] and a [`Formula`] have in common, except the inverse and the cost.
+/// Forwards the methods of the same name in [`Map`] and [`Formula`], except the inverse and the cost, which wrappers of maps change.
 macro_rules! forward_common {
     ($self:ident => $trait:ident, $to:expr) => {
         fn class(&$self) -> Class {
@@ -157,7 +157,7 @@ pub use projective::AffineMap;
 pub use rational_bezier::{RationalBezier, exact_images};
 pub use real::{Dual, Real};
 
-pub(crate) use curves::{Along, Guide, increasing_root};
+pub(crate) use curves::{Guide, GuidePace, increasing_root};
 pub(crate) use local::Local;
 pub(crate) use newton::{INVERSE_WORK, inverse_of};
 pub(crate) use patch::{Patch, powers};

@@ -12,7 +12,7 @@ use super::bend::{Align, Bend, Stretch};
 use super::entry::{Built, ByHand, Case, Entry, Example, Gallery, Info, Law, Role};
 use crate::anchors;
 use crate::error::{Error, with_area};
-use crate::map::{AffineMap, Along, Guide, TileRow, Tiled, tiled};
+use crate::map::{AffineMap, Guide, GuidePace, TileRow, Tiled, tiled};
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Axis, Kind, Letter, Settings, parameters, word_space};
 use kurbo::{Affine, BezPath, Point, Rect, Size};
@@ -224,12 +224,12 @@ impl WordArt {
         let drawn = |segs: &[Seg]| -> BezPath { outline(segs).to_bez_path(tolerance) };
         match guides {
             Guides::Between(pairs) => {
-                let along = if self.by_parameter { Along::Parameter } else { Along::ArcLength };
+                let pace = if self.by_parameter { GuidePace::Parameter } else { GuidePace::ArcLength };
                 let row = |(k, [top, bottom]): (usize, &[Vec<Seg>; 2])| {
                     let (top, bottom) = (moved(top), moved(bottom));
                     built.overlay(Role::Cage, drawn(&top));
                     built.overlay(Role::Cage, drawn(&bottom));
-                    tiled::ruled_row(self.band(cuts, k), &Guide::new(&top, along)?, &Guide::new(&bottom, along)?)
+                    tiled::ruled_row(self.band(cuts, k), &Guide::new(&top, pace)?, &Guide::new(&bottom, pace)?)
                 };
                 Ok(pairs.iter().enumerate().map(row).collect())
             }
