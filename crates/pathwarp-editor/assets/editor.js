@@ -2777,12 +2777,12 @@
       this.take(Array.from(this.keys));
     }
     /** Returns the selected handles. */
-    of(handles) {
+    selectedOf(handles) {
       return handles.handles.filter(({ key }) => this.keys.has(key));
     }
     /** Fits the box around the selected points. */
     place(handles, toScreen) {
-      const points = handles ? this.of(handles).map((h2) => toScreen(h2.get())) : [];
+      const points = handles ? this.selectedOf(handles).map((h2) => toScreen(h2.get())) : [];
       this.layer.setAttribute("visibility", points.length > 1 ? "visible" : "hidden");
       if (points.length < 2) return;
       const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
@@ -2813,7 +2813,7 @@
       };
     }
   };
-  function together(handles, chosen, modes2) {
+  function groupMover(handles, chosen, modes2) {
     const keys = new Set(chosen.map(({ key }) => key));
     const arms = handles.handles.filter(({ key }) => !keys.has(key) && /\/(in|out)$/.test(key) && keys.has(key.replace(/\/(in|out)$/, "")));
     const all = [...chosen.filter((h2) => h2.shape !== "control"), ...chosen.filter((h2) => h2.shape === "control"), ...arms];
@@ -2821,9 +2821,9 @@
     const partners = all.map((h2) => modes2.mirrors ? handles.partner(h2) : null).map((p) => p && !all.includes(p) ? p : null);
     const mirrored = reflection(handles);
     return (image) => {
-      const ends = starts.map(image);
-      all.forEach((h2, i) => h2.set(ends[i], false));
-      partners.forEach((p, i) => p?.set(mirrored(ends[i]), false));
+      const [ends, smooth] = [starts.map(image), false];
+      all.forEach((h2, i) => h2.set(ends[i], smooth));
+      partners.forEach((p, i) => p?.set(mirrored(ends[i]), smooth));
       return new Set(all.map(({ param }) => param));
     };
   }
@@ -3278,7 +3278,7 @@
     /** Returns the selected points if a handle is one of several. */
     selectedWith(handle) {
       const { handles } = this.app;
-      return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.of(handles) : null;
+      return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.selectedOf(handles) : null;
     }
     /** Returns the keys of the points in a frame between two points of the screen: nodes, or else control points. */
     keysInFrame([ax, ay], [bx, by]) {
@@ -3417,7 +3417,7 @@
         };
         if (several) {
           this.app.commitSoon();
-          this.writeParams(together(this.app.handles, several, this.modes)(shifted), performance.now());
+          this.writeParams(groupMover(this.app.handles, several, this.modes)(shifted), performance.now());
         } else {
           this.moveTo(handle, shifted(handle.get()));
         }
@@ -3652,7 +3652,7 @@
       const { handles } = this.app;
       if (!handles) return;
       const { camera } = stage2;
-      const mover = together(handles, stage2.selection.of(handles), modes2);
+      const mover = groupMover(handles, stage2.selection.selectedOf(handles), modes2);
       e.preventDefault();
       this.bend(e, (to, event) => {
         const map = image(to);

@@ -175,11 +175,11 @@ impl EditedArtwork {
             let embedded_recipe = embeds.then(text).transpose()?;
             let request = WarpRequest { recipe, embedded_recipe, ..session.request(svg, &ready)? };
             if !PICTURES.contains(&format) {
-                svg.send(format, to);
+                svg.set_output(format, to);
             }
-            let written = svg.written(&request);
-            svg.send(Format::Svg, Destination::Back); // For the next result.
-            ready.checked(written)
+            let result = svg.result(&request);
+            svg.set_output(Format::Svg, Destination::Back); // For the next result.
+            ready.checked(result)
         })
     }
 

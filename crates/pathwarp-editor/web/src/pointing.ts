@@ -3,7 +3,7 @@
 import type { App } from "./app";
 import type { Modes } from "./modes";
 import { REACH, type Stage } from "./stage";
-import { together, type Part } from "./selection";
+import { groupMover, type Part } from "./selection";
 import { hush } from "./toast";
 import type { XY } from "./types";
 
@@ -177,7 +177,7 @@ export class Pointing {
     const { handles } = this.app;
     if (!handles) return;
     const { camera } = stage;
-    const mover = together(handles, stage.selection.of(handles), modes);
+    const mover = groupMover(handles, stage.selection.selectedOf(handles), modes);
     e.preventDefault();
     this.bend(e, (to, event) => {
       const map = image(to);

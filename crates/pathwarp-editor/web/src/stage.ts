@@ -6,7 +6,7 @@ import { ARROWS, byId, s } from "./dom";
 import { apart, Drawing } from "./drawing";
 import { cells } from "./heat";
 import { Modes } from "./modes";
-import { Selection, together } from "./selection";
+import { Selection, groupMover } from "./selection";
 import { nodesOf } from "./nodes";
 import { paramName } from "./names";
 import { toast } from "./toast";
@@ -404,7 +404,7 @@ export class Stage {
   /** Returns the selected points if a handle is one of several. */
   selectedWith(handle: Handle): Handle[] | null {
     const { handles } = this.app;
-    return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.of(handles) : null;
+    return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.selectedOf(handles) : null;
   }
 
   /** Returns the keys of the points in a frame between two points of the screen: nodes, or else control points. */
@@ -561,7 +561,7 @@ export class Stage {
       };
       if (several) {
         this.app.commitSoon();
-        this.writeParams(together(this.app.handles, several, this.modes)(shifted), performance.now());
+        this.writeParams(groupMover(this.app.handles, several, this.modes)(shifted), performance.now());
       } else {
         this.moveTo(handle, shifted(handle.get()));
       }

@@ -92,7 +92,7 @@ impl Trims {
     pub(super) fn curves(&self) -> Vec<Vec<TrimCurve>> {
         let curve = |c: &Curve| TrimCurve {
             degree: c.len() - 1,
-            knots: surface::single(c.len() - 1),
+            knots: surface::single_span_knots(c.len() - 1),
             points: c.iter().map(|p| [p.x / p.w, p.y / p.w]).collect(),
             weights: c.iter().map(|p| p.w).collect(),
         };
@@ -362,7 +362,7 @@ mod tests {
         (0..4)
             .map(|k| TrimCurve {
                 degree: 2,
-                knots: surface::single(2),
+                knots: surface::single_span_knots(2),
                 points: (0..3).map(|i| corner(2 * k + i)).map(|[x, y]| [u + r * x, v + r * y]).collect(),
                 weights: vec![1.0, 0.5f64.sqrt(), 1.0],
             })

@@ -65,8 +65,8 @@ impl<'a> WriteInput<'a> {
         self.filters.get(&g.slot.filter(|_| !g.filters.is_empty())?)
     }
 
-    /// Returns `true` if a group still has its filters.
-    pub(super) fn has_filters(&self, g: &Group) -> bool {
+    /// Returns `true` if a group has filters in the result.
+    pub(super) fn keeps_filters(&self, g: &Group) -> bool {
         !g.filters.is_empty() && matches!(self.filter_outcome(g), None | Some(FilterOutcome::Fits))
     }
 

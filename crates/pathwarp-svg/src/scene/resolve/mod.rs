@@ -10,7 +10,7 @@ use super::lettering::Owners;
 use super::model::{Bitmap, Clip, Group, Mask, Node, Part, PartRole, PatternTile, PlacedText, Referrer, Scene};
 use super::resolve::builder::{Context, GroupAt, SceneBuilder, add_slot, holds_drawing, trace};
 use super::resolve::markers::{marked_children, place_markers};
-use super::resolve::tiles::{PaintOf, blends, lay_out_tiles};
+use super::resolve::tiles::{PaintKind, blends, lay_out_tiles};
 use crate::source::elements::{ElementId, Unpatchable};
 use crate::source::text::SourceText;
 use pathwarp::Outline;
@@ -210,8 +210,8 @@ fn add_part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Co
     }
     let fixed_width = traced.source.or(traced.copied).is_some_and(|e| b.fixed_widths.contains(&e));
     let tile_context = Context { owner: context.owner.or(traced.source), ..context };
-    let fill_tiles = lay_out_tiles(b, p, PaintOf::Fill, frame, tile_context);
-    let stroke_tiles = if fixed_width { None } else { lay_out_tiles(b, p, PaintOf::Stroke, frame, tile_context) };
+    let fill_tiles = lay_out_tiles(b, p, PaintKind::Fill, frame, tile_context);
+    let stroke_tiles = if fixed_width { None } else { lay_out_tiles(b, p, PaintKind::Stroke, frame, tile_context) };
     b.scene.parts.push(Part {
         source: traced.source,
         drawn: traced.drawn,

@@ -19,7 +19,7 @@ use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Axis, Choice as _, Kind, Letter, NamedPath, Settings, Value as _, choice, parameters};
 use columns::{Columns, Margins, Region, bisect, fill, no_room};
 use distortion::{distortion, grid, stretches, turning_cost};
-use fit::{Corners, SIDES, area, bounds, is_curved, preview, reversed};
+use fit::{Corners, SIDES, bounds, double_area, is_curved, preview, reversed};
 use kurbo::{Affine, Line, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -402,7 +402,7 @@ impl Chooser<'_> {
     /// Builds the map. `closed` is the shape, unless the user divided it; `ring` is its division into four sides.
     fn build(&self, closed: Option<Subpath>, ring: Result<Ring, Error>) -> Result<Built, Error> {
         // Curves that meet enclose a shape.
-        let closed = closed.or_else(|| ring.as_ref().ok().filter(|r| r.meets()).map(Ring::closed));
+        let closed = closed.or_else(|| ring.as_ref().ok().filter(|r| r.bottom_meets_top()).map(Ring::closed));
         match (self.keep, closed) {
             (Keep::Verticals, Some(shape)) if self.lines.len() > 1 => self.in_lines(&shape),
             (Keep::Verticals | Keep::Horizontals, Some(shape)) => {
@@ -511,7 +511,7 @@ fn has_four_corners(shape: &Subpath, ring: &Ring) -> bool {
     const MAX_LEAN: f64 = 0.9;
     /// The largest ratio of both stretches, relative to their means, in nine tenths of the samples.
     const MAX_RATIO: f64 = 2.2;
-    let around: f64 = shape.segs.iter().map(area).sum();
+    let around: f64 = shape.segs.iter().map(double_area).sum();
     let tips: Vec<Point> = corners::sharp_nodes(shape, around.signum()).map(|i| shape.segs[i].start()).collect();
     let size = bounds(shape).size().max_side();
     let is_corner =
@@ -536,7 +536,7 @@ fn has_four_corners(shape: &Subpath, ring: &Ring) -> bool {
 /// Ends lettering at the notches of a swallow-tailed banner: a side with a notch becomes straight, and the box is widened so that
 /// the letters end at the upright through the notch.
 fn between_notches(mut ring: Ring, shape: &Subpath, frame: Rect) -> (Ring, Rect) {
-    let around: f64 = shape.segs.iter().map(area).sum();
+    let around: f64 = shape.segs.iter().map(double_area).sum();
     let notches: Vec<Point> = corners::sharp_nodes(shape, -around.signum()).map(|i| shape.segs[i].start()).collect();
     let (Some(bottom), Some(top)) =
         (Side::new(&ring.sides[0], Pace::Length), Side::new(&reversed(&ring.sides[2]), Pace::Length))
