@@ -10,7 +10,9 @@
 
 use crate::fit::{Candidate, ChordFrame};
 use crate::judge::thorough;
-use crate::limits::{BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE};
+use crate::limits::{
+    BISECTION_MARGIN, BISECTIONS, HOPELESS, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE, TRUSTED,
+};
 use crate::path::Segment;
 use crate::report::{Assurance, Piece, REPORT_MARGIN, Report};
 use crate::sample::{CHECKED, FITTED, UNEVEN, larger, spaced};
@@ -123,7 +125,7 @@ impl<S: Source> StretchFitter<'_, S> {
     fn plan(&mut self, [from, to]: [BreakPoint; 2], whole: &FitOutcome, stack: &mut Stack) -> Result<()> {
         let tol = self.tolerance;
         // Begin with fewer parts than the difficulty predicts, of equal length.
-        let n = ((whole.difficulty(tol) * HOPE).ceil() as usize).clamp(2, MAX_PLANNED);
+        let n = ((whole.difficulty(tol) * TRUSTED).ceil() as usize).clamp(2, MAX_PLANNED);
         let mut plan = Plan { n, ends: [from; MAX_PLANNED + 1], outcomes: [None; MAX_PLANNED] };
         plan.ends[n] = to;
         let parameter = |i: usize| from.t + (to.t - from.t) * i as f64 / n as f64;
@@ -153,11 +155,11 @@ impl<S: Source> StretchFitter<'_, S> {
                 break;
             }
             let mut next = n;
-            if total > n as f64 * FULL || placements >= PLACEMENTS {
+            if total > n as f64 * HOPELESS || placements >= PLACEMENTS {
                 if !self.evenly && total <= n as f64 * REPAIRABLE && self.repair(&mut plan)? {
                     break;
                 }
-                next = (n + 1).max((total * HOPE).ceil() as usize);
+                next = (n + 1).max((total * TRUSTED).ceil() as usize);
                 placements = 0;
             }
             if next > MAX_PLANNED {

@@ -1,7 +1,7 @@
 //! Fewer pieces for consecutive stretches: across smooth joints, and across the pieces of one long curve. Stretches that join smoothly
 //! become the segments of a run, whose fewest pieces `merge` searches for.
 
-use crate::limits::{LONG, LONG_GRID, LONG_SEGMENT, LONG_WORK, LONGEST_RUN};
+use crate::limits::{LONG_GRID, LONG_SEGMENT, LONG_STRETCH, LONG_WORK, LONGEST_RUN};
 use crate::merge::{FitOwn, MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
 use crate::part::Part;
 use crate::report::{Piece, Report};
@@ -31,10 +31,10 @@ pub(crate) struct Covered<'a, S> {
 }
 
 impl<'a, S: Source> Covered<'a, S> {
-    /// Appends the stretch to a list: piece by piece if it has at least [`LONG`] pieces, else as a whole. `joints` are their last ends.
+    /// Appends the stretch to a list: piece by piece if it has at least [`LONG_STRETCH`], else as a whole. `joints` are their last ends.
     pub(crate) fn append_to(self, joints: &[BreakPoint], out: &mut Vec<Self>) {
         let Self { part, pieces, report } = self;
-        if pieces.len() < LONG || pieces.len() != joints.len() || !report.unresolved.is_empty() {
+        if pieces.len() < LONG_STRETCH || pieces.len() != joints.len() || !report.unresolved.is_empty() {
             out.push(Self { part, pieces, report });
             return;
         }

@@ -1,8 +1,10 @@
-//! Thresholds of the fit, each with its effect on pieces and work.
+//! Thresholds of the fit, each with its effect on pieces and work. Pieces are of the result, segments of the source. A stretch is
+//! an interval of the parameter that is fitted at once, a run a chain of smoothly joined segments that is fitted like one curve.
 //!
 //! "0.15: −0.9 % pieces, +7 % work" is the change over the sample of `tests/libraries/bending/figures.rs` at tolerances 1, 0.1, 0.01 and
-//! 0.001 together if this threshold alone has the value 0.15. Work is counted in calls of the map. Numbers that change both by less than
-//! 0.3 % when halved or doubled, and constants of mathematics, are defined where they are used.
+//! 0.001 together if this threshold alone has the value 0.15. Work is counted in calls of the map. Figures are "certified" if errors are
+//! proved ([`Options::certify`](crate::Options::certify)), "merged" after merging. Numbers that change both by less than 0.3 % when halved
+//! or doubled, and constants of mathematics, are defined where they are used.
 
 // Shares of the tolerance. Errors add up from the source to the output, and so the shares of each task add up to one.
 
@@ -18,7 +20,7 @@ pub(crate) const POINTS: f64 = 0.07;
 /// Share for a stroke's curves: the rest that gaps and points leave.
 pub(crate) const STROKED: f64 = 1.0 - (0.5 + POINTS) * GAPS;
 
-/// Share for the points at which edges of an area cross.
+/// Share for the points at which edges of an area cross, found once before the area grows or shrinks and once after.
 #[cfg(feature = "area")]
 pub(crate) const CROSSINGS: f64 = 0.02;
 
@@ -37,7 +39,7 @@ pub(crate) const SIMPLIFIED: f64 = 1.0 - SOURCE - 2.0 * CROSSINGS - EDGES;
 /// Share for the cubics that a long run becomes before it is covered with quadratics, which have the rest.
 pub(crate) const CUBICS_FIRST: f64 = 0.05;
 
-/// A wider gap between parts of a source is a jump. A narrower one is closed, within what [`ACCEPTED`] leaves.
+/// A wider gap between consecutive parts of a segment is a jump. A narrower one is closed, within what [`ACCEPTED`] leaves.
 pub(crate) const JUMP: f64 = 1.0 - ACCEPTED;
 
 /// Sagitta up to which an image counts as a line, as a share of the tolerance.
@@ -73,7 +75,7 @@ pub(crate) const MIN_GAIN: f64 = 0.1;
 /// Evaluations after which a step's promised gain predicts the final residual. 2: +0.3 % pieces, +0.5 % work; 6: +0.4 % and −1.8 %.
 pub(crate) const PROMISE_AFTER: usize = 3;
 
-/// A fit predicted to leave more than this multiple of the tolerance is given up: it only has to predict the number of pieces. 1: −0.3 %
+/// A fit predicted to leave more than this multiple of the tolerance is given up: its error only predicts the number of pieces. 1: −0.3 %
 /// pieces, +1.3 % work; 4: 0 and −0.2 %.
 pub(crate) const GIVE_UP: f64 = 2.0;
 
@@ -150,7 +152,7 @@ pub(crate) const THOROUGH_SAMPLES: usize = 160;
 
 // Break points
 
-/// Most evaluations of a smooth part that may be in vain, to limit the work on noise and at undeclared jumps.
+/// Most evaluations of a stretch that may be in vain, to limit the work on noise and at undeclared jumps.
 pub(crate) const FUTILE_EVALUATIONS: usize = 2_000_000;
 
 /// Evaluations that are allowed in addition for each piece found. Most pieces take some hundreds.
@@ -165,17 +167,17 @@ pub(crate) const MAX_PLANNED: usize = 8;
 /// Placements of the break points tried with one number of pieces. 2: +0.2 % pieces, −0.6 % work; 6: −0.1 % and +0.5 %.
 pub(crate) const PLACEMENTS: usize = 3;
 
-/// If the difficulties add up to more than this share of the pieces, another placement does not help. 0.5: +1.2 % pieces, −1.8 %
-/// work; 2: −0.9 % pieces, +17 % work.
-pub(crate) const FULL: f64 = 0.995;
+/// If the [difficulties](crate::breaks) add up to more than this share of the pieces, another placement does not help. 0.5: +1.2 % pieces,
+/// −1.8 % work; 2: −0.9 % pieces, +17 % work.
+pub(crate) const HOPELESS: f64 = 0.995;
 
 /// Move single break points if the difficulties add up to less than this share of the pieces. On many curves the leading term of the
 /// error vanishes somewhere, so that difficulties mislead. 0.6 (never): +3 % pieces, −11 % work; 2.3: −0.2 % pieces, +1.6 % work.
 pub(crate) const REPAIRABLE: f64 = 1.15;
 
-/// Share of the difficulty of long pieces that is believed, so that fewer pieces are tried first. 0.4: −0.4 % pieces (of
+/// The search starts with as many pieces as this share of the difficulty, which may overrate long stretches. 0.4: −0.4 % pieces (of
 /// spirals +15 %), +5 % work; 1.6: +26 % pieces.
-pub(crate) const HOPE: f64 = 0.8;
+pub(crate) const TRUSTED: f64 = 0.8;
 
 /// Bisection steps for one break point. 3: +0.6 % pieces, −3 % work; 100: −0.3 % pieces, +2 % work.
 pub(crate) const BISECTIONS: usize = 5;
@@ -187,7 +189,7 @@ pub(crate) const BISECTION_MARGIN: f64 = 0.1;
 // Merging (figures count merged pieces)
 
 /// Pieces of one stretch from which on fewer are searched for.
-pub(crate) const LONG: usize = 3;
+pub(crate) const LONG_STRETCH: usize = 3;
 
 /// Pieces of one segment of a path from which on fewer are searched for. 3: +40 % time for rectangles under waves, in vain.
 pub(crate) const LONG_SEGMENT: usize = 6;
@@ -215,7 +217,7 @@ pub const MERGE_GRID: usize = 8;
 /// work; without: circles of eight cubics under strong maps have up to a sixth more pieces.
 pub(crate) const EVEN_CURVATURE: f64 = 0.05;
 
-/// The end of a cubic is searched up to its length in grid points divided by this, so that short cubics end as late as possible.
+/// The end of a cubic is located to within its length in grid points divided by this, but at least to one grid point.
 /// Without: 100,000 cubics round a circle take more than linear time.
 pub(crate) const FINEST_STEP: usize = 128;
 
@@ -265,7 +267,7 @@ pub(crate) const SHARP_TURN: f64 = 0.25;
 /// possible, because it grows a little when carried.
 pub(crate) const CARRY_BELOW: f64 = 0.7;
 
-// Placed nodes
+// Nodes placed by `Nodes::Auto` and `Nodes::Extremes`
 
 /// A node moves to an extreme if the curve turns by less than this up to the extreme, as a sine (20°).
 pub(crate) const MOVED_TURN: f64 = 0.342;

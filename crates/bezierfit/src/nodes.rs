@@ -2,7 +2,7 @@
 //! as few pieces as the tolerance allows, divided alike from either end.
 
 use crate::joined::{cover_far, fewest};
-use crate::limits::{FULL, HOPE, MAX_PLANNED, MOVED_TURN, ON_AXIS, PLACEMENTS, SMOOTH_JOINT};
+use crate::limits::{HOPELESS, MAX_PLANNED, MOVED_TURN, ON_AXIS, PLACEMENTS, SMOOTH_JOINT, TRUSTED};
 use crate::merge::{FitOwn, Leg, OwnPieces, PassedLeg, ReachMemory, Reaches};
 use crate::options::Nodes;
 use crate::part::Part;
@@ -403,8 +403,8 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
             }
             placements += 1;
             let mut next = n;
-            if sums[n] > n as f64 * FULL || placements >= PLACEMENTS {
-                next = (n + 1).max((sums[n] * HOPE).ceil() as usize);
+            if sums[n] > n as f64 * HOPELESS || placements >= PLACEMENTS {
+                next = (n + 1).max((sums[n] * TRUSTED).ceil() as usize);
                 placements = 0;
             }
             if next > MAX_QUANTILES && !searched {

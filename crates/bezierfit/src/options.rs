@@ -19,8 +19,8 @@ pub struct Options {
     pub tolerance: f64,
     /// Prove the error where the source is a quotient of polynomials, instead of measuring it by dense sampling. Cubics only.
     pub certify: bool,
-    /// Joints of a path that turn by more than this, in radians, are corners. `None`, the default: joints that no smooth curve can replace
-    /// within the tolerance are corners, such as those of a square with sides of ten tolerances, but not stairs of pixels, noise or facets.
+    /// Joints of a path that turn by more than this, in radians, are corners. `None`, the default: a joint is a corner if no smooth curve
+    /// passes within the tolerance, as at those of a square with sides of ten tolerances, but not of pixel stairs, noise or facets.
     /// Joints of other curves are smooth up to half a degree by default.
     pub corner: Option<f64>,
     /// Choice of the nodes. By default, as few as the tolerance allows.
@@ -56,7 +56,7 @@ pub enum Degree {
 pub enum Nodes {
     /// Nodes of the source's structure: smooth horizontal and vertical extremes with handles along the axis, and ends of straight lines
     /// and arcs. Such a node moves to an extreme of the result, with handles exactly along the axis, if the curve turns by less than 20° up
-    /// to there. Between them are as few pieces as the tolerance allows, divided alike from either end.
+    /// to there. Between them are as few pieces as the tolerance allows, the same ones if the path runs the other way.
     Auto,
     /// Nodes wherever they allow the fewest pieces.
     #[default]
@@ -131,13 +131,13 @@ impl Options {
     }
 
     /// Largest turn of a smooth joint of curves other than paths, in radians.
-    pub(crate) fn joint(&self) -> f64 {
+    pub(crate) fn max_smooth_turn(&self) -> f64 {
         self.corner.unwrap_or(SMOOTH_JOINT)
     }
 
     /// Largest turn of a joint of a path that may lie inside a piece, in radians: at most the corner angle. At larger turns the piece would
     /// differ from the path in direction, although not in distance.
-    pub(crate) fn path_joint(&self) -> f64 {
+    pub(crate) fn max_inner_turn(&self) -> f64 {
         const MOST: f64 = 15.0 / 180.0 * std::f64::consts::PI;
         self.corner.map_or(MOST, |corner| corner.min(MOST))
     }

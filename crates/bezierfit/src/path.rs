@@ -85,7 +85,7 @@ fn merged_parts<S: Source>(
     }
     if options.nodes.merges() {
         let Options { tolerance, certify, .. } = *options;
-        let (corner, finely) = (options.joint(), covered.len() > parts.len());
+        let (corner, finely) = (options.max_smooth_turn(), covered.len() > parts.len());
         let settings = JoinSettings { tolerance, corner, certify, finely, evenly: false };
         join(&covered, settings, memory, &mut out, report)?;
     } else {
@@ -108,7 +108,7 @@ fn append_splines<S: Source>(
     while let Some(first) = rest.first() {
         let smooth = |w: &[Part<'_, S>]| {
             let (u, v) = (w[0].ends[1].into, w[1].ends[0].away);
-            options.nodes.merges() && u.cross(v).atan2(u.dot(v)).abs() <= options.joint()
+            options.nodes.merges() && u.cross(v).atan2(u.dot(v)).abs() <= options.max_smooth_turn()
         };
         let count = 1 + rest.windows(2).take_while(|w| smooth(w)).count();
         let ends = [first.ends[0], rest[count - 1].ends[1]];
@@ -212,7 +212,7 @@ fn simplify_path(path: &BezPath, options: &Options) -> Result<Fitted> {
 fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize)> {
     let mut run = SegmentRun::new(true, segments.len().min(64));
     let most = if options.nodes.merges() { segments.len() } else { 1 };
-    let count = run.extend(&segments[..most], options.path_joint(), |segment| {
+    let count = run.extend(&segments[..most], options.max_inner_turn(), |segment| {
         let form = if options.certify { segment.quotient() } else { None };
         let ends = [segment.end(0.0)?, segment.end(1.0)?];
         let is_line = matches!(segment.seg, PathSeg::Line(_));
@@ -247,7 +247,7 @@ pub(crate) fn smooth_run(
     let (run, count) = smooth_start(segments, options)?;
     let mut append_own = append_unchanged(segments);
     if options.nodes.are_placed() && count > usize::from(options.nodes == Nodes::Auto) {
-        let closed = closed && count == segments.len() && run.closes(options.path_joint());
+        let closed = closed && count == segments.len() && run.closes(options.max_inner_turn());
         let Options { nodes, tolerance, .. } = *options;
         placed(&run, NodeSettings { nodes, tolerance, closed, left: f64::INFINITY }, memory, pieces, report)?;
         return Ok(count);

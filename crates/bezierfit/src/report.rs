@@ -2,7 +2,7 @@
 
 use kurbo::{BezPath, CubicBez, Line, ParamCurveNearest, Point};
 
-/// One segment of the output.
+/// One segment of the output. Quadratics, which only splines have, are no pieces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Piece {
     /// A line.
@@ -53,7 +53,7 @@ pub enum Assurance {
     Exact,
 }
 
-/// Factor from a checked error to the reported error, up to the tolerance, for errors between samples. It does not affect acceptance.
+/// A checked error is reported times this factor, for what lies between the samples; that of an accepted piece at most as the tolerance.
 pub(crate) const REPORT_MARGIN: f64 = 1.05;
 
 /// Error of a piece.
@@ -72,7 +72,7 @@ pub struct Report {
     pub max_error: f64,
     /// Basis of `max_error`: the weakest of all pieces.
     pub assurance: Assurance,
-    /// [Points](crate::Source::place) at which the tolerance was not met.
+    /// Points at which the tolerance was not met, as the source [names them](crate::Source::place).
     pub unresolved: Vec<Point>,
     /// The pieces, in order.
     pub pieces: Vec<PieceReport>,
@@ -97,7 +97,7 @@ impl Report {
         self.assurance = self.assurance.min(assurance);
     }
 
-    /// Removes the entries of the pieces from number `first` on. Returns their report.
+    /// Removes the entries of the pieces from number `first` on. Returns their report. Unresolved points, which belong to no piece, stay.
     pub(crate) fn split_off(&mut self, first: usize) -> Self {
         let [before, mut after] = [std::mem::take(self), Self::default()];
         for (i, p) in before.pieces.iter().enumerate() {

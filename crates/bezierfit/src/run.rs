@@ -38,7 +38,7 @@ pub struct RunSegment<S> {
     kind: Kind,
     /// Curvature at both ends.
     curvature: [Curvature; 2],
-    /// Set if the segment begins at a node that belongs to the source's structure.
+    /// Set if the segment begins at a node of the source's structure (`is_structure`), which placed nodes repeat.
     pub kept: bool,
     /// Slow spots. Only a segment that is the whole run may have any.
     pub slow: SlowSpots,
@@ -213,10 +213,10 @@ impl<S: Source> SegmentRun<S> {
 
     /// Assurance of the checked error of pieces of this run.
     pub fn assurance(&self, tolerance: f64) -> Assurance {
-        let unknown = |s: &RunSegment<S>| s.source.resolved([0.0, 1.0], self.per_segment, tolerance).is_none();
+        let cannot_tell = |s: &RunSegment<S>| s.source.resolved([0.0, 1.0], self.per_segment, tolerance).is_none();
         match self.segments.first() {
             Some(s) if s.is_provable() => Assurance::Certified,
-            Some(s) if unknown(s) => Assurance::Sampled,
+            Some(s) if cannot_tell(s) => Assurance::Sampled,
             _ => Assurance::Checked,
         }
     }
@@ -226,8 +226,8 @@ impl<S: Source> SegmentRun<S> {
         self.grid * self.segments.len()
     }
 
-    /// A copy with `by` times as many samples and grid points. `None` if the curvature jumps, so that the run is not one curve with more
-    /// nodes than it needs, or if it has fewer than six segments.
+    /// A copy with `by` times as many samples and grid points, for one curve with more nodes than it needs. `None` if its curvature jumps
+    /// or there are fewer than six segments.
     pub(crate) fn finer(&self, by: usize) -> Result<Option<Self>>
     where
         S: Clone,
@@ -366,11 +366,12 @@ pub(crate) struct RunCubic {
     pub(crate) frame: ChordFrame,
     /// First and last point.
     pub(crate) ends: [Point; 2],
+    /// Lengths of the first and the last handle.
     pub(crate) a: f64,
     pub(crate) b: f64,
     /// Set if the image is a line to rounding.
     is_line: bool,
-    /// Samples of the run at the ends.
+    /// Numbers of the run's samples at the ends.
     pub(crate) samples: [usize; 2],
     /// Lengths up to the sixteen samples and the ends, as shares of the whole, and their foot points.
     pub(crate) shares: InOrder,
@@ -404,8 +405,8 @@ pub(crate) struct Stretch {
     ends: [BreakPoint; 2],
     samples: [usize; 2],
     frame: ChordFrame,
-    g: Lanes,
-    check: Lanes,
+    fitted_samples: Lanes,
+    checked_samples: Lanes,
     shares: InOrder,
 }
 
@@ -443,25 +444,25 @@ impl Stretch {
                 (x[j], y[j]) = (x[j] - from.p.x, y[j] - from.p.y);
             }
         }
-        let g = Lanes { x: picked(&x, &FITTED), y: picked(&y, &FITTED) };
-        let check = Lanes { x: picked(&x, &CHECKED), y: picked(&y, &CHECKED) };
+        let fitted_samples = Lanes { x: picked(&x, &FITTED), y: picked(&y, &FITTED) };
+        let checked_samples = Lanes { x: picked(&x, &CHECKED), y: picked(&y, &CHECKED) };
         let q = to.p - from.p;
-        let size = size(q, &g, evenly);
+        let size = size(q, &fitted_samples, evenly);
         let third = length * (1.0 / 3.0);
         let frame = ChordFrame::new(q, [from.away, to.into], size, [third; 2], tolerance);
-        Self { tolerance, evenly, ends, samples, frame, g, check, shares }
+        Self { tolerance, evenly, ends, samples, frame, fitted_samples, checked_samples, shares }
     }
 
     /// Fits a cubic: by least squares, and by further methods as long as the error is above the tolerance.
     pub(crate) fn fitted(mut self) -> Result<Trial> {
         let [from, to] = &self.ends;
-        if let Some((line, error)) = straight(&self.g, [from, to], self.frame.size, self.tolerance) {
+        if let Some((line, error)) = straight(&self.fitted_samples, [from, to], self.frame.size, self.tolerance) {
             let third = line.p0.distance(line.p1) / 3.0;
             return Ok(Trial { error, cubic: Some(self.run_cubic([third; 2], self.shares, true)) });
         }
         let [a, b] = self.frame.home;
         let mut start = FitState { a, b, s: picked(&self.shares, &FITTED) };
-        self.frame.settle(&self.g, a, b, &mut start.s);
+        self.frame.settle(&self.fitted_samples, a, b, &mut start.s);
         let tolerance = self.tolerance;
         let best = best_fit(&mut self, &THOROUGH, start, tolerance)?;
         Ok(self.trial(&best))
@@ -470,7 +471,7 @@ impl Stretch {
     /// Fits a cubic with the least error that can be reached, starting from `from`.
     pub(crate) fn fitted_closely(mut self, from: &RunCubic) -> Result<Trial> {
         let (state, tolerance) = (FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED) }, self.tolerance);
-        let fit = fit(&THOROUGH, &self.frame, &self.g, state, [0.0, tolerance]);
+        let fit = fit(&THOROUGH, &self.frame, &self.fitted_samples, state, [0.0, tolerance]);
         let mut best = BestFit::judged(fit, &mut self, tolerance)?;
         best.minimise(&mut self, [0.0, tolerance])?;
         Ok(self.trial(&best))
@@ -502,11 +503,11 @@ impl Fitting for Stretch {
     type Mark = InOrder;
 
     fn samples(&self) -> (&ChordFrame, &Lanes) {
-        (&self.frame, &self.g)
+        (&self.frame, &self.fitted_samples)
     }
 
     fn checked(&mut self) -> Result<Lanes> {
-        Ok(self.check)
+        Ok(self.checked_samples)
     }
 
     fn evenly(&self) -> bool {
@@ -518,6 +519,7 @@ impl Fitting for Stretch {
         let (fitted, checked) = (picked(&self.shares, &FITTED), picked(&self.shares, &CHECKED));
         let mut out = [0.0; 8];
         for i in 0..8 {
+            // Two checked samples lie in the gap between the fitted samples 3 and 4, and one in every other gap.
             let before = [0, 1, 2, 3, 3, 4, 5, 6][i];
             let (step, rest) = (fitted[before + 1] - fitted[before], checked[i] - fitted[before]);
             out[i] = s[before] + if step > 0.0 { (s[before + 1] - s[before]) * (rest / step) } else { 0.0 };
@@ -526,15 +528,16 @@ impl Fitting for Stretch {
     }
 
     fn judge(&mut self, fit: &Fit) -> Result<(f64, InOrder)> {
-        let (state, fitted) = (&fit.state, settled(&self.frame, &self.g, fit, self.tolerance));
+        let (state, fitted) = (&fit.state, settled(&self.frame, &self.fitted_samples, fit, self.tolerance));
         let mut s = self.feet_between(&fitted.s);
-        let squares = self.frame.distances(&self.check, state.a, state.b, &mut s, 1);
+        let squares = self.frame.distances(&self.checked_samples, state.a, state.b, &mut s, 1);
         let mut error = larger(fitted.error, largest(&squares).sqrt());
         if error <= self.tolerance {
-            let e0 = self.frame.signed_distances(&self.g, state.a, state.b, &fitted.s, &fitted.squares);
-            let e1 = self.frame.signed_distances(&self.check, state.a, state.b, &s, &squares);
+            let e0 = self.frame.signed_distances(&self.fitted_samples, state.a, state.b, &fitted.s, &fitted.squares);
+            let e1 = self.frame.signed_distances(&self.checked_samples, state.a, state.b, &s, &squares);
             error = highest_parabola(&interleaved(&e0, &e1, 0.0), error);
         }
+        // Between placed nodes, where fits are even, handles end at their crossing.
         if self.evenly && self.crosses(state.a, state.b) {
             error = larger(error, MISSED * self.tolerance);
         }

@@ -330,7 +330,7 @@ fn tangent(segment: &Segment, t: f64) -> Vec2 {
 /// when seen from a tolerance away. Callers leave out segments without length.
 pub(crate) fn smooth_parts(segments: Vec<Segment>, closed: bool, options: &Options) -> Vec<SmoothPart> {
     let n = segments.len();
-    let smooth = options.path_joint().min(SMOOTH_JOINT);
+    let smooth = options.max_inner_turn().min(SMOOTH_JOINT);
     let last = n.saturating_sub(usize::from(!closed));
     let kinked = |i: usize| {
         let turn = turn(&segments[i], &segments[(i + 1) % n]);

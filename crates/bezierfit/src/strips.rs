@@ -19,9 +19,9 @@ pub(crate) struct Neighbors {
     cell: f64,
     points: HashMap<[i64; 2], Vec<Point>>,
     /// Offsets to the cells that a circle of the distance touches, the nearest first, with the distances between the cells.
-    around: Vec<([i64; 2], f64)>,
+    cell_offsets: Vec<([i64; 2], f64)>,
     /// The last point found near, which is often near to the next one, too.
-    last: Cell<Point>,
+    last_near: Cell<Point>,
 }
 
 impl Neighbors {
@@ -42,9 +42,9 @@ impl Neighbors {
             let [x, y] = c.map(|v| (v.abs() - 1).max(0) as f64 * cell);
             (c, x.hypot(y))
         };
-        let mut around: Vec<_> = cells.map(gap).filter(|(_, gap)| *gap < distance).collect();
-        around.sort_by_key(|(c, _)| (c[0] * c[0] + c[1] * c[1], *c));
-        Self { cell, points, around, last: Cell::new(Point::new(f64::NAN, f64::NAN)) }
+        let mut cell_offsets: Vec<_> = cells.map(gap).filter(|(_, gap)| *gap < distance).collect();
+        cell_offsets.sort_by_key(|(c, _)| (c[0] * c[0] + c[1] * c[1], *c));
+        Self { cell, points, cell_offsets, last_near: Cell::new(Point::new(f64::NAN, f64::NAN)) }
     }
 
     /// Returns `true` if a point of the outlines is known to be nearer than `radius`, which is at most the distance.
@@ -52,14 +52,14 @@ impl Neighbors {
         if radius <= 0.0 {
             return false;
         }
-        let is_near = |q: &&Point| q.distance_squared(p) < radius * radius;
-        if is_near(&&self.last.get()) {
+        let is_within = |q: &&Point| q.distance_squared(p) < radius * radius;
+        if is_within(&&self.last_near.get()) {
             return true;
         }
         let [x, y] = cell_of(p, self.cell);
-        let cells = self.around.iter().filter(|(_, gap)| *gap < radius);
-        let mut near = cells.filter_map(|([i, j], _)| self.points.get(&[x + i, y + j])?.iter().find(is_near));
-        near.next().inspect(|q| self.last.set(**q)).is_some()
+        let cells = self.cell_offsets.iter().filter(|(_, gap)| *gap < radius);
+        let mut near = cells.filter_map(|([i, j], _)| self.points.get(&[x + i, y + j])?.iter().find(is_within));
+        near.next().inspect(|q| self.last_near.set(**q)).is_some()
     }
 }
 
@@ -89,7 +89,8 @@ pub(crate) fn strips(edges: &[Kept], distance: f64, slack: f64, neighbors: &Neig
     };
     let mut out: Vec<Strip> = Vec::new();
     for kept in edges {
-        // Whole edges are used, beyond their crossings, too: strips overlap there.
+        // Each edge is used from end to end, also beyond the crossings between which it is kept: strips overlap there. Links and edges that
+        // run backwards are all nearer to the outline than the distance.
         let is_backwards = matches!(kept.edge.curve, EdgeCurve::Side(s) if s.speed(0.5) < 0.0);
         if kept.is_link || is_backwards {
             continue;
@@ -105,6 +106,7 @@ pub(crate) fn strips(edges: &[Kept], distance: f64, slack: f64, neighbors: &Neig
             }
         }
     }
+    // Around a closed outline, the last strip may continue in the first one.
     if let [first, .., last] = &out[..]
         && follows(last, first)
     {

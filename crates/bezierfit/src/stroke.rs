@@ -745,7 +745,7 @@ fn fit_contour(edges: &[Edge], options: &Options, memory: &mut ReachMemory, repo
     let mut i = 0;
     while i < edges.len() {
         let mut run = SegmentRun::new(false, edges.len() - i);
-        let count = run.extend(&edges[i..], options.joint(), |edge| {
+        let count = run.extend(&edges[i..], options.max_smooth_turn(), |edge| {
             let ends = [edge.end(0.0)?, edge.end(1.0)?];
             Ok(Some(RunSegment::new(*edge, None, ends, edge.is_line())))
         })?;

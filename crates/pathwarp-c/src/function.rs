@@ -53,6 +53,7 @@ impl Function {
         let creases = pathwarp_plugin::creases(creases.lines().filter(|l| !l.trim().is_empty()));
         let creases = creases.map_err(|fault| Failed::usage(format!("function.creases: {fault}")))?;
         let detail = Some(f.detail).filter(|d| *d > 0.0 && d.is_finite());
+        // The header lets every function write NaN where its map has no image.
         let abilities =
             Abilities { jacobian: f.jets.is_some(), inverse: f.inverse.is_some(), partial: true, creases, detail };
         Ok((Self { points, jets: f.jets, inverse: f.inverse, data: f.data }, abilities, f.any_thread != 0))
@@ -86,16 +87,16 @@ impl Callee for Function {
 pub(crate) fn on_calling_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     thread_local! {
         // A thread can join one pool only, for good.
-        static ALONE: OnceCell<Option<rayon::ThreadPool>> = const { OnceCell::new() };
+        static POOL_OF_ONE: OnceCell<Option<rayon::ThreadPool>> = const { OnceCell::new() };
     }
     let pool = || rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().ok();
-    ALONE.with(|alone| match alone.get_or_init(pool) {
+    POOL_OF_ONE.with(|one| match one.get_or_init(pool) {
         Some(pool) => pool.install(work),
         None => work(),
     })
 }
 
-/// Runs `work` on all cores, even where the calling thread has run something alone.
+/// Runs `work` on all cores, even on a thread that [`on_calling_thread`] has bound to a pool of one.
 pub(crate) fn on_all_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     static ALL: std::sync::OnceLock<Option<rayon::ThreadPool>> = std::sync::OnceLock::new();
     if rayon::current_thread_index().is_none() {

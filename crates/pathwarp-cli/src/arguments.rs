@@ -8,7 +8,7 @@ use pathwarp_engine::options::{CommonOption, Given, LeadingMinus, OPTIONS, Optio
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
-/// Returns the inputs and options of a parsed command line. The command may have only some of them.
+/// Returns the inputs and options of a parsed command line. The command need not declare them all.
 pub(crate) fn given(m: &ArgMatches) -> Given {
     let is_declared = m.try_contains_id(INPUT).is_ok();
     let inputs = is_declared.then(|| m.get_many::<PathBuf>(INPUT)).flatten().into_iter().flatten().cloned();
@@ -31,11 +31,11 @@ fn values(
     let is_declared = |o: &CommonOption| m.try_contains_id(o.name).is_ok();
     let is_typed = |o: &CommonOption| is_declared(o) && m.value_source(o.name) == Some(ValueSource::CommandLine);
     let typed = |option: &'static CommonOption| {
-        let words = m.get_raw(option.name).into_iter().flatten();
+        let raw = m.get_raw(option.name).into_iter().flatten();
         let values = match option.value {
             OptionValue::Switch(_) => vec!["true".into()],
-            OptionValue::Choice(_) => words.map(OsStr::to_ascii_lowercase).collect(),
-            _ => words.map(OsStr::to_owned).collect(),
+            OptionValue::Choice(_) => raw.map(OsStr::to_ascii_lowercase).collect(),
+            _ => raw.map(OsStr::to_owned).collect(),
         };
         (option, values)
     };
@@ -61,7 +61,7 @@ pub(crate) fn inputs_arg() -> Arg {
 
 /// Returns the common options, without the inputs.
 pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
-    OPTIONS.iter().map(|o| arg(o).help_heading("Common options").conflicts_with_all(o.conflicts.iter().copied()))
+    OPTIONS.iter().map(|o| arg_of(o).help_heading("Common options").conflicts_with_all(o.conflicts.iter().copied()))
 }
 
 /// The common options of commands that write a drawing without bending it.
@@ -70,15 +70,15 @@ pub(crate) const OUTPUT_OPTIONS: [&str; 8] =
 
 /// Returns the common options with these names, for a command that has only some of them.
 pub(crate) fn some_options(names: &[&str]) -> impl Iterator<Item = Arg> {
-    OPTIONS.iter().filter(|o| names.contains(&o.name)).map(|o| arg(o).help_heading("Common options"))
+    OPTIONS.iter().filter(|o| names.contains(&o.name)).map(|o| arg_of(o).help_heading("Common options"))
 }
 
 /// Returns the options for reading drawings, for commands without other common options.
 pub(crate) fn reading_args() -> impl Iterator<Item = Arg> {
-    OPTIONS.iter().filter(|o| o.reading).map(|o| arg(o).help_heading("Reading"))
+    OPTIONS.iter().filter(|o| o.reading).map(|o| arg_of(o).help_heading("Reading"))
 }
 
-fn arg(option: &CommonOption) -> Arg {
+fn arg_of(option: &CommonOption) -> Arg {
     let arg = Arg::new(option.name).long(option.name).short(option.short).visible_aliases(option.alias);
     let arg = arg.help(option.help());
     match &option.value {

@@ -75,9 +75,9 @@ pub(crate) fn for_each_row(
     table.check_columns(texts, out).map_err(|e| Failure::usage(format!("{name} {e}")))?;
     let targets = table.targets(out).map_err(|e| Failure::Input(format!("{name}: {e}")))?;
     let mut files = Files::default();
-    reads.iter().chain([&file]).for_each(|f| files.read(f));
+    reads.iter().chain([&file]).for_each(|f| files.add_source(f));
     // Refuses outputs that are also read, or given twice. No option of their own names them.
-    targets.iter().try_for_each(|t| files.write(t, ""))?;
+    targets.iter().try_for_each(|t| files.add_output(t, ""))?;
     let _empty_ones_removed_at_the_end = Folders::of(targets.iter().map(PathBuf::as_path))?;
     let (mut failures, mut partial) = (Vec::new(), false);
     for ((number, cells), target) in table.rows.iter().zip(&targets) {

@@ -83,7 +83,7 @@ pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> Exi
         Ok(Status::Complete) => ExitCode::SUCCESS,
         Ok(Status::Partial) => ExitCode::from(1),
         Err(ending) => {
-            let flags = Flags::of(registry).and(Flags::of(&pathwarp_solid::deform::Registry3::builtin()));
+            let flags = Flags::of(registry).with(Flags::of(&pathwarp_solid::deform::Registry3::builtin()));
             ending.show(&flags);
             ExitCode::from(ending.code())
         }

@@ -49,7 +49,7 @@ pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
             "{word} is a folder, not a command; `pathwarp warp -r {word} --style flag --out-dir OUT` warps the drawings in it"
         ));
     }
-    coming_from::meant(catalogue, word)
+    coming_from::suggestion(catalogue, word)
 }
 
 /// Finds the first option with one dash instead of two, which would be read as letters: `-rotate 5` as `-r -o tate 5`.

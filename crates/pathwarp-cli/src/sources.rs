@@ -25,12 +25,12 @@ struct Source {
 
 impl Files {
     /// Adds a file that is read: FILE of `FILE#NAME`, and nothing for `-`.
-    pub(crate) fn read(&mut self, input: &Path) {
+    pub(crate) fn add_source(&mut self, input: &Path) {
         self.add(input, false);
     }
 
     /// Adds artwork: a file that is read, and that `--in-place` may overwrite.
-    pub(crate) fn read_artwork(&mut self, input: &Path) {
+    pub(crate) fn add_artwork(&mut self, input: &Path) {
         self.add(input, true);
     }
 
@@ -52,7 +52,7 @@ impl Files {
     ///
     /// # Errors
     /// [`Failure::Usage`] if the output is a file that is read, or another output.
-    pub(crate) fn write(&mut self, to: &Path, option: &str) -> Result<(), Failure> {
+    pub(crate) fn add_output(&mut self, to: &Path, option: &str) -> Result<(), Failure> {
         if is_device(to) {
             return Ok(());
         }

@@ -22,14 +22,14 @@ pub(crate) struct ChainPart {
 }
 
 /// Returns an alternative name of a deformation.
-pub(crate) fn aliases(name: &str) -> Option<&'static str> {
+pub(crate) fn alias(name: &str) -> Option<&'static str> {
     (name == "projective").then_some("perspective")
 }
 
-/// Joins the steps of all parts, and the options for the whole chain.
+/// Joins the steps of all parts, and the options for the whole chain. If several parts select artwork, each selection goes to its step.
 pub(crate) fn chained(mut parts: Vec<ChainPart>) -> Result<(Recipe, Given), Failure> {
     assign(parts.iter_mut().map(|p| (std::slice::from_mut(&mut p.step), &mut p.options)));
-    // The first part's options come last, since its inputs do.
+    // Of options that repeat, such as fonts, the first part's values come last.
     let mut options = parts.iter().skip(1).chain(parts.first()).map(|p| &p.options);
     let given = options.try_fold(Given::default(), |all, options| all.joined(options))?;
     Ok((Recipe { steps: parts.into_iter().map(|p| p.step).collect() }, given))
@@ -47,7 +47,7 @@ pub(crate) fn parts(
 fn part(catalogue: &dyn Catalogue, words: &[OsString], options: &[Arg]) -> Result<ChainPart, Ending> {
     let edits = EDITS.iter().filter(|_| !catalogue.is_solid());
     let deformation = |info: &Info| {
-        Command::new(info.name).aliases(aliases(info.name)).about(info.title).args(args(info)).args(options)
+        Command::new(info.name).aliases(alias(info.name)).about(info.title).args(args(info)).args(options)
     };
     let command = Command::new("pathwarp … +")
         .no_binary_name(true)

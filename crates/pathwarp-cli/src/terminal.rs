@@ -12,7 +12,7 @@ const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 const NOTE: Style = AnsiColor::Cyan.on_default().bold();
 
 fn print(style: Style, label: &str, message: &str) {
-    anstream::eprintln!("{style}{label}{style:#}: {}", readable::message(message));
+    anstream::eprintln!("{style}{label}{style:#}: {}", readable::safe_message(message));
 }
 
 pub(crate) fn error(message: &str) {

@@ -63,7 +63,7 @@ pub(crate) fn begin(limits: Limits) {
 }
 
 /// Stops watching until [`begin`]: an editor may stay open for hours, and limits the work of every picture itself.
-pub(crate) fn rest() {
+pub(crate) fn pause() {
     if let Some(watched) = lock().as_mut() {
         watched.is_resting = true;
     }

@@ -237,7 +237,7 @@
     return a / b;
   }
   var BOUNDLESS = 1e6;
-  function asked(unit, from = -Infinity, to = Infinity, isWhole = false) {
+  function describeLimits(unit, from = -Infinity, to = Infinity, isWhole = false) {
     const [least, most] = [Number(from.toPrecision(6)), to < BOUNDLESS ? to : Infinity];
     const [what, end2] = [isWhole ? "A whole number" : "A number", unit && ` ${unit}`];
     if (least > -Infinity && most < Infinity) return `${what} from ${least} to ${most}${end2}`;
@@ -252,7 +252,7 @@
     return /^(\S+|[^:;]*\.\w{1,5}): /.test(text) ? text : text.replace(/^./, (c) => c.toUpperCase());
   }
   var Field = class {
-    /** `take` accepts a text and returns its problem, if any; `isWrong` checks texts while they are typed. */
+    /** `take` accepts a text and returns its problem; `isWrong` checks typed texts; `nudge` moves the value by steps and returns its text. */
     constructor(input, read, take, isWrong = () => null, nudge) {
       this.input = input;
       this.read = read;
@@ -341,9 +341,9 @@
     return whole > 0 ? percent(100 * value / whole) : short(value);
   }
   function pathData(subpaths) {
-    return subpaths.map(({ start, segments, closed: closed2 }) => {
+    return subpaths.map(({ start, segments, closed }) => {
       const body = segments.map((seg) => (seg.length === 2 ? "L" : "C") + pairs(seg));
-      return `M${pairs(start)} ${body.join(" ")}${closed2 ? " Z" : ""}`;
+      return `M${pairs(start)} ${body.join(" ")}${closed ? " Z" : ""}`;
     }).join(" ");
   }
   function pairs(numbers) {
@@ -552,7 +552,7 @@
     for (let row = points; row.length > 1; rows.push(row)) row = row.slice(1).map((p, i) => mix(row[i], p, t));
     return rows;
   }
-  function closed(sub) {
+  function withClosingLine(sub) {
     const last = sub.segments[sub.segments.length - 1];
     const isOpen = last && Math.hypot(end(last)[0] - sub.start[0], end(last)[1] - sub.start[1]) > 1e-9;
     if (sub.closed && isOpen) sub.segments.push([...sub.start]);
@@ -636,7 +636,7 @@
     /** Handles of numbers. */
     dials = [];
     /** A path of the drawing that a parameter referred to before its line was dragged. */
-    released = null;
+    freedPath = null;
     /** Indices of the control points of nets that have been moved, by parameter. */
     moved = {};
     collect() {
@@ -651,7 +651,7 @@
         if (name === this.deformation.gallery?.bend && grip.value !== void 0) this.addBend(name, grip);
         if (name === "radius" && grip.value !== void 0 && this.grips.center?.point) this.addRadius(name, grip);
         if (grip.circle) this.addCircle(name, grip);
-        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? closed(sub) : sub, `${i}.${j}`)));
+        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? withClosingLine(sub) : sub, `${i}.${j}`)));
       }
       const isAnamorphosis = this.grips.eye || this.grips["eye-height"];
       this.dials = this.handles.every(({ param }) => param === "about") ? dials(this) : isAnamorphosis ? inSpace(this) : [];
@@ -1018,7 +1018,7 @@
       else {
         const before2 = this.step.args[name] ?? [];
         this.step.args[name] = valuesOf(param, grip, this.frame, before2);
-        this.released ??= before2.find((value) => value.startsWith("#")) ?? null;
+        this.freedPath ??= before2.find((value) => value.startsWith("#")) ?? null;
       }
     }
     /** Writes a value for each moved control point of a net; it replaces earlier values and shifts. */
@@ -1155,7 +1155,7 @@
     gone = [];
     handles = null;
     /** A path of the drawing that was a guide until its line was dragged. */
-    released = null;
+    freedPath = null;
     summary = null;
     warnings = [];
     problem = null;
@@ -1316,11 +1316,11 @@
         this.isDraftWanted = false;
         const start = this.draftedEventTime;
         await this.attempt(async () => {
-          const asked2 = performance.now();
+          const asked = performance.now();
           const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT_TOLERANCE * this.screen.pixel });
           const answered = performance.now();
           this.take(answer);
-          const detail = { start, asked: asked2, answered, shown: performance.now(), size: this.connection.size };
+          const detail = { start, asked, answered, shown: performance.now(), size: this.connection.size };
           window.dispatchEvent(new CustomEvent(DRAFT_EVENT, { detail }));
         });
       } while (this.isDraftWanted);
@@ -1573,7 +1573,7 @@
       this.tell("handles");
     }
     takeHandles() {
-      this.released = this.handles?.released ?? null;
+      this.freedPath = this.handles?.freedPath ?? null;
       const deformation = this.deformation(this.step?.deformation);
       const grips = this.grips[this.selected];
       this.handles = this.step && deformation && grips ? new Handles(deformation, this.step, grips) : null;
@@ -1822,7 +1822,7 @@
       for (const [name, [unit, size, least]] of Object.entries(TYPED)) {
         const input = byId(`background-${name}`);
         const number = (text) => inUnits(text, unit) ?? NaN;
-        const isWrong = (text) => number(text) >= (least ?? -Infinity) ? null : asked(unit, least);
+        const isWrong = (text) => number(text) >= (least ?? -Infinity) ? null : describeLimits(unit, least);
         const field = new Field(input, () => String(Number((this.placement[name] / size).toFixed(2))), (text) => {
           this.move({ [name]: number(text) * size });
           void this.keep();
@@ -1872,7 +1872,7 @@
     /** `true` once the server has been asked for the background, or has stored it. */
     isKept = false;
     /** Requests points around the object in a photograph. */
-    onRound = () => {
+    onOutline = () => {
     };
     /** Stores the background in the server, until the page is loaded again. */
     async keep() {
@@ -2030,7 +2030,7 @@
       if (!file || !variant) return;
       const choose = (value) => void app2.choose("envelope", { envelope: [value] }, variant.label);
       this.show(false);
-      if (!this.isDrawing) return this.onRound(choose);
+      if (!this.isDrawing) return this.onOutline(choose);
       if (outlines.childElementCount === 0) {
         const bytes = await base64(file);
         const answer = await app2.request({ do: "drawn", name: file.name, bytes });
@@ -2044,7 +2044,7 @@
       if (paths.length === 0) return app2.fail(`${file.name} has no paths: click points around a shape with “Draw path” among the settings of “${variant.label}”`);
       const [only] = paths;
       if (only && paths.length === 1 && !/Z.*M/i.test(only.getAttribute("d") ?? "")) return choose(ring(only, stage2, this.corners[0]));
-      stage2.pick((path, at) => choose(ring(path, stage2, stage2.camera.inPx(at))), ".outlines path", `Click a path of ${file.name}`);
+      stage2.pick((path, at) => choose(ring(path, stage2, stage2.camera.inPx(at))), `Click a path of ${file.name}`, ".outlines path");
     }
   };
   function ring(path, stage2, [x, y]) {
@@ -2413,7 +2413,7 @@
     /** Shows the lines to which the handle has snapped, in user units. */
     onSnap = () => {
     };
-    /** Returns the other points to add with a point: its reflection, if symmetry is on. */
+    /** Returns the other points to add with a point: its reflection, if symmetry is on and that is more than `reach` (user units) away. */
     reflections(handles, at, reach) {
       const other = reflection(handles)(at);
       return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
@@ -2448,7 +2448,7 @@
         partner?.set(mirrored(target), this.smooths);
       };
     }
-    /** Returns the point near `to` that is aligned with the frame or another handle; Alt disables that. */
+    /** Returns the point within `reach` (user units) of `to` that is aligned with the frame or another handle; Alt disables that. */
     snapped(to, handle, handles, reach, e) {
       if (!this.snaps || e.altKey || handle.shape === "control") {
         this.onSnap(null, null);
@@ -2630,7 +2630,7 @@
           stage2.moveTo(this.handle, i === 0 ? [value, at[1]] : [at[0], value]);
         };
         const read = () => this.handle ? shown2(this.handle)[i] : "";
-        const isWrong = (typed) => coordinate(typed) === null ? `${asked("")} or 50 %` : null;
+        const isWrong = (typed) => coordinate(typed) === null ? `${describeLimits("")} or 50 %` : null;
         const take = (typed) => {
           if (this.handle && typed !== read()) move(coordinate(typed));
           return null;
@@ -2777,12 +2777,12 @@
       this.take(Array.from(this.keys));
     }
     /** Returns the selected handles. */
-    of(handles) {
+    selectedOf(handles) {
       return handles.handles.filter(({ key }) => this.keys.has(key));
     }
     /** Fits the box around the selected points. */
     place(handles, toScreen) {
-      const points = handles ? this.of(handles).map((h2) => toScreen(h2.get())) : [];
+      const points = handles ? this.selectedOf(handles).map((h2) => toScreen(h2.get())) : [];
       this.layer.setAttribute("visibility", points.length > 1 ? "visible" : "hidden");
       if (points.length < 2) return;
       const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
@@ -2813,7 +2813,7 @@
       };
     }
   };
-  function together(handles, chosen, modes2) {
+  function groupMover(handles, chosen, modes2) {
     const keys = new Set(chosen.map(({ key }) => key));
     const arms = handles.handles.filter(({ key }) => !keys.has(key) && /\/(in|out)$/.test(key) && keys.has(key.replace(/\/(in|out)$/, "")));
     const all = [...chosen.filter((h2) => h2.shape !== "control"), ...chosen.filter((h2) => h2.shape === "control"), ...arms];
@@ -2821,9 +2821,9 @@
     const partners = all.map((h2) => modes2.mirrors ? handles.partner(h2) : null).map((p) => p && !all.includes(p) ? p : null);
     const mirrored = reflection(handles);
     return (image) => {
-      const ends = starts.map(image);
-      all.forEach((h2, i) => h2.set(ends[i], false));
-      partners.forEach((p, i) => p?.set(mirrored(ends[i]), false));
+      const [ends, smooth] = [starts.map(image), false];
+      all.forEach((h2, i) => h2.set(ends[i], smooth));
+      partners.forEach((p, i) => p?.set(mirrored(ends[i]), smooth));
       return new Set(all.map(({ param }) => param));
     };
   }
@@ -2943,7 +2943,7 @@
       app2.listen(["state"], () => this.takeState());
       app2.listen(["handles"], () => this.rebuild());
       app2.listen(["report"], () => this.showsStretch && void this.drawStretch());
-      app2.listen(["report", "steps"], () => void this.drawEnd());
+      app2.listen(["report", "steps"], () => void this.drawFinalResult());
       this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
       this.svg.addEventListener("keydown", (e) => this.key(e));
       this.svg.addEventListener("keyup", (e) => {
@@ -3012,7 +3012,7 @@
     isBefore = false;
     showsNodes = false;
     showsStretch = false;
-    showsEnd = false;
+    showsFinalResult = false;
     /** The deformation whose handles are highlighted. */
     greeted = "";
     /** The time that the last faint result took, in ms. */
@@ -3167,9 +3167,9 @@
       this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
     });
     /** Shows or hides the result of all steps behind the picture of fewer steps. */
-    drawEnd = latest(async () => {
+    drawFinalResult = latest(async () => {
       const { app: app2 } = this;
-      const isEarlier = () => this.showsEnd && app2.selected < app2.steps.length - 1;
+      const isEarlier = () => this.showsFinalResult && app2.selected < app2.steps.length - 1;
       const draft = app2.isDragging ? END_TOLERANCE * this.camera.pixel : null;
       if (draft !== null && this.endTime > END_TIME_LIMIT) return;
       const start = performance.now();
@@ -3210,13 +3210,13 @@
       }
       this.selection.place(this.app.isDragging && this.app.cancelGesture ? null : handles, (p) => this.camera.toScreen(p));
     }
-    /** `true` if dragging the background selects points. */
-    get selects() {
+    /** `true` if dragging the background selects points, of which there must be several. */
+    get isSelecting() {
       return this.modes.selects && (this.app.handles?.handles.length ?? 0) > 1;
     }
     rebuild() {
       const { handles } = this.app;
-      this.svg.classList.toggle("selecting", this.selects);
+      this.svg.classList.toggle("selecting", this.isSelecting);
       this.knobOf.clear();
       const lines = handles?.lines() ?? [];
       this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
@@ -3278,7 +3278,7 @@
     /** Returns the selected points if a handle is one of several. */
     selectedWith(handle) {
       const { handles } = this.app;
-      return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.of(handles) : null;
+      return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.selectedOf(handles) : null;
     }
     /** Returns the keys of the points in a frame between two points of the screen: nodes, or else control points. */
     keysInFrame([ax, ay], [bx, by]) {
@@ -3300,8 +3300,8 @@
       const box = this.svg.getBoundingClientRect();
       return [e.clientX - box.left, e.clientY - box.top];
     }
-    /** Lets the next click pick a path among those that a selector matches; `request`, if any, is shown until then. */
-    pick(take, selector = ".art [id]", request = "") {
+    /** Lets the next click pick a path among those that `selector` matches; `request`, if any, is shown until then. */
+    pick(take, request = "", selector = ".art [id]") {
       [this.onPick, this.pickSelector] = [take, selector];
       this.svg.classList.toggle("picking", take !== null || this.modes.picksParts);
       this.svg.classList.toggle("outlining", take !== null && selector !== ".art [id]");
@@ -3417,7 +3417,7 @@
         };
         if (several) {
           this.app.commitSoon();
-          this.writeParams(together(this.app.handles, several, this.modes)(shifted), performance.now());
+          this.writeParams(groupMover(this.app.handles, several, this.modes)(shifted), performance.now());
         } else {
           this.moveTo(handle, shifted(handle.get()));
         }
@@ -3560,7 +3560,7 @@
       else if (this.modes.picksParts && bends) this.pan(e, () => stage2.pickPartAt(e));
       else if (part && bends) this.transform(e, stage2.selection.transform(part, stage2.point(e)));
       else if (bends && !e.shiftKey && stage2.selection.holds(stage2.point(e))) this.transform(e, translation(stage2.point(e)), () => stage2.select([]));
-      else if (bends && (e.shiftKey || stage2.selects)) this.frame(e);
+      else if (bends && (e.shiftKey || stage2.isSelecting)) this.frame(e);
       else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage2.select([]));
     }
     /** Follows a pointer until it is lifted, Escape is pressed, or a second finger touches. Returns a function that cancels the action. */
@@ -3652,7 +3652,7 @@
       const { handles } = this.app;
       if (!handles) return;
       const { camera } = stage2;
-      const mover = together(handles, stage2.selection.of(handles), modes2);
+      const mover = groupMover(handles, stage2.selection.selectedOf(handles), modes2);
       e.preventDefault();
       this.bend(e, (to, event) => {
         const map = image(to);
@@ -3843,8 +3843,8 @@
       byId("mirror").hidden = !has;
       byId("snap").hidden = !has;
       byId("select").hidden = (handles?.handles.length ?? 0) < 2;
-      if (app2.released) toast(`The line has left ${app2.released}, which is artwork again. Undo brings it back`);
-      app2.released = null;
+      if (app2.freedPath) toast(`The line has left ${app2.freedPath}, which is artwork again. Undo brings it back`);
+      app2.freedPath = null;
       if (app2.appends) return show("note", "Choose the shape of the next step, or press Escape");
       if (app2.steps.length === 0) return show("note", "Choose a shape");
       if (app2.step?.hidden) return show("note", "This step is hidden: it bends nothing. The eye in the list brings it back");
@@ -4216,7 +4216,7 @@
     onDraw = () => {
     };
     /** Called when the settings of another step are shown. */
-    onOther = () => {
+    onStepChange = () => {
     };
     build() {
       const { step: step2 } = this.app;
@@ -4227,7 +4227,7 @@
       const signature = [this.app.selected, step2?.deformation, ...adjusts, ...circles].join();
       if (signature === this.builtFor && this.box.childElementCount > 0) return this.refresh();
       this.builtFor = signature;
-      this.onOther();
+      this.onStepChange();
       this.refreshers = [];
       if (!step2 || !deformation) return this.box.replaceChildren();
       const main = params.filter((p) => isCaption(step2) && p.kind !== "point" || isMain(p, step2.args[p.name] !== void 0) || this.app.grip(p.name)?.adjust !== void 0);
@@ -4318,7 +4318,7 @@
         const present = circle2();
         return present ? app2.setTyped(p.name, [arc([present[0], present[1], mm * unit, present[3], present[4]])]) : null;
       };
-      const field = new Field(input, () => hundredths((circle2()?.[2] ?? 0) / unit).toString(), (text) => set2(number(text)), (text) => number(text) > 0 ? null : asked("mm", 0));
+      const field = new Field(input, () => hundredths((circle2()?.[2] ?? 0) / unit).toString(), (text) => set2(number(text)), (text) => number(text) > 0 ? null : describeLimits("mm", 0));
       const note = h("p", { class: "wrong", role: "status" });
       const grow = button({ class: "link" }, () => void set2(Number(grow.dataset.mm)));
       const warning = h("div", { hidden: true }, note, grow);
@@ -4370,7 +4370,7 @@
         const q = evaluate(typed, unit());
         const units = p.kind === "length" ? /^(%|px|mm|cm|m|in|pt|pc|q|)$/ : usual === "%" ? /^%?$/ : usual === "°" ? /^°$/ : /^$/;
         const fits = q && units.test(q.unit) && (!isWhole || Number.isInteger(q.value));
-        return fits && q.value >= (least ?? -Infinity) && q.value <= (most ?? Infinity) ? null : asked(unit(), least, most, isWhole);
+        return fits && q.value >= (least ?? -Infinity) && q.value <= (most ?? Infinity) ? null : describeLimits(unit(), least, most, isWhole);
       };
       const take = (typed) => typed.trim() === "" ? this.app.setTyped(p.name, []) : this.app.setTyped(p.name, [text(evaluate(typed, unit()))]);
       const nudge = (typed, times) => {
@@ -4451,7 +4451,7 @@
       this.slide(slider, (value) => [p.name, values(value)], () => values(usual / size));
       const isWrong = (typed) => {
         const q = evaluate(typed || short(usual / size), sign);
-        return q && q.unit === sign && q.value >= least / size && q.value <= most / size ? null : asked(sign, hundredths(least / size), hundredths(most / size));
+        return q && q.unit === sign && q.value >= least / size && q.value <= most / size ? null : describeLimits(sign, hundredths(least / size), hundredths(most / size));
       };
       const take = (typed) => this.app.setTyped(p.name, values(evaluate(typed, sign)?.value ?? usual / size));
       const nudge = (typed, times) => {
@@ -4623,9 +4623,9 @@
       const text = (p) => p.map(short).join(",");
       const isNear = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < SAME_POINT * stage2.camera.pixel;
       const userPoint = (e) => stage2.camera.toUser(stage2.point(e));
-      const path = (closed2) => {
+      const path = (closed) => {
         if (kind === "round") return points.length < 3 ? null : smoothRing(points, text);
-        return points.length < 2 ? null : `M${points.map(text).join(" L")}${closed2 ? " Z" : ""}`;
+        return points.length < 2 ? null : `M${points.map(text).join(" L")}${closed ? " Z" : ""}`;
       };
       const isClicked = kind === "path" || kind === "round";
       stage2.svg.addEventListener("pointerdown", (e) => {
@@ -4851,12 +4851,12 @@
     closeSheets();
     sketching.begin(kind, take);
   };
-  background.onRound = (take) => sketching.begin("round", take);
-  settings.onOther = () => sketching.end();
+  background.onOutline = (take) => sketching.begin("round", take);
+  settings.onStepChange = () => sketching.end();
   settings.onPick = (take) => {
     closeSheets();
     sketching.end();
-    stage.pick((path) => take(partOf(path.closest("[id]").id)), void 0, "Click a path of the drawing");
+    stage.pick((path) => take(partOf(path.closest("[id]").id)), "Click a path of the drawing");
   };
   function on(id, action) {
     byId(id).addEventListener("click", action);
@@ -4888,7 +4888,7 @@
   }
   toggle("select", () => modes.selects, (v) => {
     modes.selects = v;
-    stage.svg.classList.toggle("selecting", stage.selects);
+    stage.svg.classList.toggle("selecting", stage.isSelecting);
   });
   toggle("pick-parts", () => modes.picksParts, (v) => {
     modes.picksParts = v;
@@ -4902,9 +4902,9 @@
     stage.showsNodes = v;
     stage.drawNodes();
   });
-  var showEnd = toggle("end", () => stage.showsEnd, (v) => {
-    stage.showsEnd = v;
-    void stage.drawEnd();
+  var showFinalResult = toggle("end", () => stage.showsFinalResult, (v) => {
+    stage.showsFinalResult = v;
+    void stage.drawFinalResult();
   });
   toggle("stretch", () => stage.showsStretch, (v) => {
     stage.showsStretch = v;
@@ -4950,7 +4950,7 @@
     "-": () => stage.zoom(1 / ZOOM),
     "0": () => stage.fit(),
     b: () => void stage.showBefore(true),
-    e: showEnd,
+    e: showFinalResult,
     "?": () => showKeys()
   };
   var COMMANDS2 = {

@@ -153,11 +153,11 @@ pub(crate) fn key(drawing: &Path, content: &[u8]) -> String {
     // A drawing dropped on the page may not exist as a file here.
     let joined = || folder.canonicalize().unwrap_or_default().join(drawing.file_name().unwrap_or_default());
     let path = drawing.canonicalize().unwrap_or_else(|_| joined());
-    hex(&[path.as_os_str().as_encoded_bytes(), &[0], content])
+    sha256_hex(&[path.as_os_str().as_encoded_bytes(), &[0], content])
 }
 
 /// Returns the SHA-256 sum of pieces of text, in hexadecimal.
-pub(crate) fn hex(pieces: &[&[u8]]) -> String {
+pub(crate) fn sha256_hex(pieces: &[&[u8]]) -> String {
     let mut sum = Sha256::new();
     pieces.iter().for_each(|piece| sum.update(piece));
     sum.finalize().iter().fold(String::new(), |mut text, byte| {

@@ -50,7 +50,6 @@ enum Version {
     Small,
 }
 
-/// A drawing in the editor.
 struct EditedArtwork {
     svg: SvgArtwork,
     /// The drawing with an id for every element, which tells the page what is clicked; `None` if all elements have one.
@@ -71,18 +70,17 @@ struct EditedArtwork {
     /// The drawing's file; results go to its folder.
     file: PathBuf,
     /// The frame of the last picture.
-    framed: Option<Framed>,
+    last_frame: Option<Framed>,
 }
 
 impl EditedArtwork {
-    /// Returns the folder of the drawing.
     fn folder(&self) -> &Path {
         self.file.parent().unwrap_or(Path::new(""))
     }
 
     /// Makes the bitmap of a large drawing, unless it exists.
     fn draw_sketch(&mut self) -> Result<(), Failure> {
-        /// Length of a drawing's text, with pictures, from which thumbnails bend a bitmap: a page bends fifty of them.
+        /// Length of a drawing's text, with pictures embedded, from which thumbnails bend a bitmap of it: a page shows fifty thumbnails.
         const LARGE: usize = 256 << 10;
         /// The longer side of the bitmap, in pixels; thumbnails are half as large.
         const PIXELS: f32 = 256.0;
@@ -94,11 +92,11 @@ impl EditedArtwork {
             return Ok(());
         }
         let bitmap = page::Picture::bitmap(document.text(), PIXELS, reading);
-        let (png, filled) = bitmap.map_err(Failure::Input)?;
-        let image = document.user_to_px().inverse().transform_rect_bbox(filled);
+        let (png, filled_box) = bitmap.map_err(Failure::Input)?;
+        let image = document.user_to_px().inverse().transform_rect_bbox(filled_box);
         let xywh = |r: Rect| [r.x0, r.y0, r.width(), r.height()];
         let ([x, y, width, height], page) = (xywh(image), xywh(document.view_box()).map(|v| v.to_string()).join(" "));
-        // The width keeps the resolution, since drafts draw few pixels per px of the page.
+        // Drafts draw one pixel for 4 px of the page in each direction, so this width keeps the resolution.
         let svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{page}\" width=\"{}\"><image preserveAspectRatio=\"none\" x=\"{x}\" \
              y=\"{y}\" width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{}\"/></svg>",
@@ -131,21 +129,21 @@ impl EditedArtwork {
     ) -> Result<T, Failure> {
         let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
-        let Self { svg, shown, light, sketch, registry, given, options, framed, .. } = self;
-        let (svg, framed) = match version {
-            Version::File => (svg, framed),
-            Version::Page => (shown.as_mut().unwrap_or(svg), framed),
-            Version::Light => (light.as_mut().and_then(Option::as_mut).or(shown.as_mut()).unwrap_or(svg), framed),
+        let Self { svg, shown, light, sketch, registry, given, options, last_frame, .. } = self;
+        let (svg, frame_cache) = match version {
+            Version::File => (svg, last_frame),
+            Version::Page => (shown.as_mut().unwrap_or(svg), last_frame),
+            Version::Light => (light.as_mut().and_then(Option::as_mut).or(shown.as_mut()).unwrap_or(svg), last_frame),
             Version::Small => match sketch {
                 // The bitmap's frame differs.
                 Some(sketch) => (sketch, &mut None),
-                None => (svg, framed),
+                None => (svg, last_frame),
             },
         };
         svg.renew_budget();
-        svg.restore(options);
+        svg.restore(options); // The last result may have been divided into parts.
         let session = Session { registry, recipe: &resolved, options, given };
-        let ready = session.ready(svg, Some(framed))?;
+        let ready = session.ready(svg, Some(frame_cache))?;
         work(&session, svg, ready)
     }
 
@@ -176,16 +174,16 @@ impl EditedArtwork {
             };
             let embedded_recipe = embeds.then(text).transpose()?;
             let request = WarpRequest { recipe, embedded_recipe, ..session.request(svg, &ready)? };
-            if format.of_picture(None).is_none() {
-                svg.send(format, to);
+            if !PICTURES.contains(&format) {
+                svg.set_output(format, to);
             }
-            let written = svg.written(&request);
-            svg.send(Format::Svg, Destination::Back);
-            ready.checked(written)
+            let result = svg.result(&request);
+            svg.set_output(Format::Svg, Destination::Back); // For the next result.
+            ready.checked(result)
         })
     }
 
-    /// Returns the contents of the file `to`, and the losses of its format.
+    /// Returns the contents of the file `to`, and the losses of its format. Linked pictures are embedded unless it `stays` on this machine.
     fn written(
         &mut self,
         recipe: &Recipe,
@@ -198,7 +196,7 @@ impl EditedArtwork {
         let destination = if stays { Destination::of(Some(to)) } else { Destination::Anywhere };
         let Exported { bytes, mut warnings, kerf } = self.exported(recipe, format, destination)?;
         warnings.extend(kerf.map(|k| k.note()));
-        if format.of_picture(None).is_none() {
+        if !PICTURES.contains(&format) {
             return Ok((bytes, warnings));
         }
         let limits = self.options.reading.limits.for_input(bytes.len());
@@ -212,11 +210,11 @@ impl EditedArtwork {
 
     /// Turns a failure into a sentence in the page's terms.
     fn explained<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
+        result.map_err(|f| self.names.without_options(&f.message(&self.flags)))
     }
 }
 
-/// Replaces the options that abbreviate edits by steps, which the page has.
+/// Turns the options that abbreviate edits into steps, as the page shows only these.
 fn edits_to_steps(saved: &mut SavedRecipe) -> Result<(), Failure> {
     let mut edits = saved.options.read()?.edits;
     ["simplify", "outset"].iter().for_each(|name| drop(saved.options.take(name)));
@@ -255,7 +253,7 @@ fn bend(
 ) -> Result<Bent, Failure> {
     let mut request = WarpRequest { recipe: given, same_view: true, ..session.request(svg, &ready)? };
     if let Fineness::Draft(draft) | Fineness::Small(draft) = fineness {
-        (request.tolerance, request.suited) = (draft.max(request.tolerance), false);
+        (request.tolerance, request.suited) = (draft.max(request.tolerance), false); // Also for small contours.
         let (svg, page) = ready.checked(svg.draft(&request))?;
         let Ready { recipe: resolved, built, .. } = ready;
         return Ok(Bent { svg, page, resolved, built: built.whole, summary: None, warnings: Vec::new() });
@@ -320,7 +318,7 @@ impl Artwork for EditedArtwork {
     }
 
     fn frame(&self) -> Rect {
-        let known = self.framed.as_ref().map(|f| f.frame.rect);
+        let known = self.last_frame.as_ref().map(|f| f.frame.rect);
         known.or_else(|| self.svg.bounding_box(Which::All)).unwrap_or_else(|| self.document().view_box())
     }
 
@@ -331,7 +329,7 @@ impl Artwork for EditedArtwork {
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
         let bent = self.bend_version(recipe, fineness);
         let mut bent = self.explained(bent)?;
-        bent.warnings.iter_mut().for_each(|w| *w = self.names.plain(w));
+        bent.warnings.iter_mut().for_each(|w| *w = self.names.without_options(w));
         Ok(bent)
     }
 
@@ -344,7 +342,7 @@ impl Artwork for EditedArtwork {
     ) -> Result<(Vec<u8>, Vec<String>), String> {
         let written = Self::written(self, recipe, to, stays, picture);
         let (bytes, warnings) = self.explained(written)?;
-        Ok((bytes, warnings.iter().map(|w| self.names.plain(w)).collect()))
+        Ok((bytes, warnings.iter().map(|w| self.names.without_options(w)).collect()))
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
@@ -359,10 +357,8 @@ impl Artwork for EditedArtwork {
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
-        let adapted = for_command_line(recipe, &self.given);
-        self.explained(
-            adapted.and_then(|(recipe, given)| recipe_file::write(&*self.registry, &recipe, &given, self.folder())),
-        )
+        let (recipe, given) = self.explained(for_command_line(recipe, &self.given))?;
+        self.explained(recipe_file::write(&*self.registry, &recipe, &given, self.folder()))
     }
 }
 
@@ -404,8 +400,8 @@ impl EngineHost {
         let reading = self.given.read()?.reading;
         reading.check()?;
         let limits = reading.limits.for_input(bytes.len());
-        let framed = framed(bytes, &limits).map_err(|e| Failure::file(file, e.message(&self.flags)))?;
-        let bytes = framed.as_deref().unwrap_or(bytes);
+        let as_svg = framed(bytes, &limits).map_err(|e| Failure::file(file, e.message(&self.flags)))?;
+        let bytes = as_svg.as_deref().unwrap_or(bytes); // A picture is opened as a drawing of it.
         let origin = Origin::of_file(bytes, "the drawing", &limits).unwrap_or(None);
         let folder = file.parent().unwrap_or(Path::new(""));
         let (source, saved) = match &origin {
@@ -444,14 +440,14 @@ impl EngineHost {
             names: Arc::clone(&self.names),
             plugins: self.plugins.clone(),
             file: file.to_owned(),
-            framed: None,
+            last_frame: None,
         };
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 
     /// Turns a failure into a sentence in the page's terms.
     fn explained<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
+        result.map_err(|f| self.names.without_options(&f.message(&self.flags)))
     }
 }
 

@@ -40,7 +40,7 @@ impl Guard {
         Ok(Self { token: URL_SAFE_NO_PAD.encode(bytes), port })
     }
 
-    /// Returns the file that stores the guard of the last run on a drawing.
+    /// Returns the file that stores the guard of the last run on a drawing, named after the drawing's path only.
     fn file(state: &Path, drawing: &Path) -> PathBuf {
         state.join("addresses").join(draft::key(drawing, &[]) + ".json")
     }
@@ -53,15 +53,15 @@ impl Guard {
         URL_SAFE_NO_PAD.decode(&guard.token).is_ok_and(|t| t.len() == TOKEN_BYTES).then_some(guard)
     }
 
-    /// Stores the guard for the next run on a drawing.
+    /// Stores the guard for the next run on a drawing, to which a page that is still open then connects.
     pub(crate) fn keep(&self, host: &dyn Host, state: &Path, drawing: &Path) -> Result<(), String> {
         let text = serde_json::to_string(self).map_err(|e| e.to_string())?;
         draft::write(host, &Self::file(state, drawing), text.as_bytes())
     }
 
-    /// Proves that this server knows the token, without revealing it, by the answer to a question of the page.
+    /// Returns a hash of the token and a question of the page, by which the page, which knows the token, recognises its server.
     pub(crate) fn proof(&self, question: &str) -> String {
-        draft::hex(&[self.token.as_bytes(), question.as_bytes()])
+        draft::sha256_hex(&[self.token.as_bytes(), question.as_bytes()])
     }
 
     /// Returns the address of the page.
@@ -70,7 +70,7 @@ impl Guard {
     }
 
     /// Checks the host and, if the browser names one, the origin.
-    pub(crate) fn check_place(&self, host: Option<&str>, origin: Option<&str>) -> Result<(), Refusal> {
+    pub(crate) fn check_host_and_origin(&self, host: Option<&str>, origin: Option<&str>) -> Result<(), Refusal> {
         let port = self.port;
         let own = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
         let is_own = |host: &str| own.iter().any(|o| o.eq_ignore_ascii_case(host));
@@ -103,13 +103,13 @@ mod tests {
     #[test]
     fn only_the_own_page_with_the_token_passes() {
         let guard = Guard::new(4000).unwrap();
-        let place = |host, origin| guard.check_place(host, origin);
-        assert_eq!(place(Some("127.0.0.1:4000"), None), Ok(()));
-        assert_eq!(place(Some("localhost:4000"), Some("http://localhost:4000")), Ok(()));
-        assert_eq!(place(Some("127.0.0.1:4000"), Some("http://127.0.0.1:4001")), Err(Refusal::Origin));
-        assert_eq!(place(Some("127.0.0.1:4000"), Some("null")), Err(Refusal::Origin));
-        assert_eq!(place(Some("rebound.example:4000"), None), Err(Refusal::Host));
-        assert_eq!(place(None, None), Err(Refusal::Host));
+        let check = |host, origin| guard.check_host_and_origin(host, origin);
+        assert_eq!(check(Some("127.0.0.1:4000"), None), Ok(()));
+        assert_eq!(check(Some("localhost:4000"), Some("http://localhost:4000")), Ok(()));
+        assert_eq!(check(Some("127.0.0.1:4000"), Some("http://127.0.0.1:4001")), Err(Refusal::Origin));
+        assert_eq!(check(Some("127.0.0.1:4000"), Some("null")), Err(Refusal::Origin));
+        assert_eq!(check(Some("rebound.example:4000"), None), Err(Refusal::Host));
+        assert_eq!(check(None, None), Err(Refusal::Host));
         let address = guard.address();
         let (_, query) = address.split_once('?').unwrap();
         assert_eq!(guard.check_token(query), Ok(()));

@@ -26,7 +26,7 @@ pub(crate) fn answer(mut stream: TcpStream, guard: &Guard) -> io::Result<Option<
         return refuse(&mut stream, "400 Bad Request", "this is not a request of a browser");
     };
     let header = |name: &str| request.headers().get(name).and_then(|v| v.to_str().ok());
-    if let Err(refusal) = guard.check_place(header("host"), header("origin")) {
+    if let Err(refusal) = guard.check_host_and_origin(header("host"), header("origin")) {
         return refuse(&mut stream, "403 Forbidden", explain(refusal));
     }
     if request.method() != Method::GET {

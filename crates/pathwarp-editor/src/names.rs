@@ -9,7 +9,7 @@ use std::ops::Range;
 pub(crate) struct Names(BTreeMap<&'static str, String>);
 
 impl Names {
-    /// Collects the names of all parameters. A parameter with several labels keeps its name in the registry.
+    /// Collects the names of all parameters. A parameter that deformations label differently keeps its name in the registry.
     pub(crate) fn of<'a>(infos: impl Iterator<Item = &'a Info>) -> Self {
         let mut names: BTreeMap<&'static str, String> = BTreeMap::new();
         for info in infos {
@@ -25,15 +25,15 @@ impl Names {
         Self(names)
     }
 
-    /// Removes options from a message: those of parameters become names of controls, and advice about others is dropped.
-    pub(crate) fn plain(&self, message: &str) -> String {
-        let parts: Vec<String> = message.split("; ").filter_map(|part| self.without_options(part)).collect();
-        if parts.is_empty() { self.with_controls(message, true) } else { parts.join("; ") }
+    /// Removes options from a message: those of parameters become names of controls; advice about others is dropped, unless it is all.
+    pub(crate) fn without_options(&self, message: &str) -> String {
+        let parts: Vec<String> = message.split("; ").filter_map(|part| self.part(part)).collect();
+        if parts.is_empty() { self.name_options(message, true) } else { parts.join("; ") }
     }
 
     /// Converts a part of a message, between semicolons; `None` if nothing is left of it.
-    fn without_options(&self, text: &str) -> Option<String> {
-        let mut text = self.with_controls(text, false);
+    fn part(&self, text: &str) -> Option<String> {
+        let mut text = self.name_options(text, false);
         while let Some(option) = option(&text, 0) {
             let (before, after) = (&text[..option.start], &text[option.end..]);
             if let (Some(open), Some(close)) = (before.rfind(" ("), after.find(')')) {
@@ -47,7 +47,7 @@ impl Names {
     }
 
     /// Replaces options by names of controls: options of parameters, or all.
-    fn with_controls(&self, text: &str, all: bool) -> String {
+    fn name_options(&self, text: &str, all: bool) -> String {
         let (mut out, mut done) = (String::with_capacity(text.len()), 0);
         // `true` after a name of a control instead of a quoted option, whose closing quote is dropped.
         let mut quoted = false;
@@ -127,11 +127,10 @@ mod tests {
             ("--frame: there is no drawing", "“Frame”: there is no drawing"),
             ("a--b.svg: is no drawing", "a--b.svg: is no drawing"),
         ] {
-            assert_eq!(names.plain(told), plain);
+            assert_eq!(names.without_options(told), plain);
         }
     }
 
-    /// No option of the engine remains, at any position in a sentence.
     #[test]
     fn no_option_is_left() {
         let registry = Registry::builtin();
@@ -144,7 +143,7 @@ mod tests {
                 format!("12 became outlines (--{name} scale|keep prevents that)"),
                 format!("`--{name}` and `--{name} 3` exclude each other"),
             ] {
-                let plain = names.plain(&text);
+                let plain = names.without_options(&text);
                 assert!(!plain.contains("--") && plain.len() > 5, "{text}: {plain}");
             }
         }

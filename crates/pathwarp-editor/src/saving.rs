@@ -36,19 +36,19 @@ fn numbered_names(beside: &Path, stem: &str) -> impl Iterator<Item = PathBuf> {
     })
 }
 
-/// Returns the file of a drawing, or of a result's source, judging by its name, and `true` if it exists with the content `source`.
-/// Otherwise the name is an unused one.
-pub(crate) fn source_of(result: &Path, source: &[u8]) -> Option<(PathBuf, bool)> {
-    let stem = result.file_stem()?.to_string_lossy().into_owned();
+/// Returns the file beside `opened` that holds `source`, the drawing shown or the source of the result shown, and `true`: for `x-bent.svg`
+/// one of `x.svg`, `x.svgz`, `x-source.svg`, `x-source-2.svg` and so on. If none holds it, returns an unused name, and `false`.
+pub(crate) fn source_of(opened: &Path, source: &[u8]) -> Option<(PathBuf, bool)> {
+    let stem = opened.file_stem()?.to_string_lossy().into_owned();
     let stem = stem.rfind(SUFFIX).map_or(stem.as_str(), |at| &stem[..at]);
-    let drawings = [".svg", ".svgz"].map(|extension| result.with_file_name(format!("{stem}{extension}")));
-    let is_source = |name: &Path| std::fs::read(name).is_ok_and(|content| content == source);
+    let drawings = [".svg", ".svgz"].map(|extension| opened.with_file_name(format!("{stem}{extension}")));
+    let has_content = |name: &Path| std::fs::read(name).is_ok_and(|content| content == source);
     let beside = format!("{stem}-source");
     let known = drawings
         .into_iter()
-        .chain(numbered_names(result, &beside).take_while(|n| n.exists()))
-        .find(|name| is_source(name));
-    Some(known.map_or_else(|| (unused_name(result, &beside), false), |name| (name, true)))
+        .chain(numbered_names(opened, &beside).take_while(|n| n.exists()))
+        .find(|name| has_content(name));
+    Some(known.map_or_else(|| (unused_name(opened, &beside), false), |name| (name, true)))
 }
 
 /// Returns the path of the file `name` in the folder of `beside`.

@@ -30,11 +30,11 @@ pub(crate) fn vanished<'a>(shapes: impl Iterator<Item = &'a ShapeReport>) -> Opt
 }
 
 /// Returns the message of an error of the libraries, with parameters as flags and advice on options.
-pub(crate) fn error(e: &Error, flags: &Flags) -> String {
+pub(crate) fn error_message(e: &Error, flags: &Flags) -> String {
     match e {
         // The value is the user's text, so only the problem is searched for parameters.
         Error::Usage { param, value, problem, advice } => {
-            // A likely name helps more than the list of all.
+            // A likely name helps more than the list of all, which is the advice if a name is unknown.
             let likely = flags.likely(param, value).filter(|_| !advice.is_empty());
             let advice = likely.map_or_else(|| flags.in_text(advice), |name| format!("; did you mean {name}?"));
             Error::usage(&format!("--{param}"), value, flags.in_text(problem) + &advice).to_string()
@@ -42,12 +42,12 @@ pub(crate) fn error(e: &Error, flags: &Flags) -> String {
         Error::Missing { param, hint } => Error::missing(&format!("--{param}"), flags.in_text(hint)).to_string(),
         Error::Input { limit: Some(exceeded), .. } => format!("{e}; {}", raise(exceeded)),
         Error::Input { place, problem, .. } => Error::input(place, flags.in_text(problem)).to_string(),
-        Error::Geometry(g) => geometry(g, flags),
+        Error::Geometry(g) => geometry_message(g, flags),
         _ => flags.in_text(&e.to_string()),
     }
 }
 
-fn geometry(e: &GeometryError, flags: &Flags) -> String {
+fn geometry_message(e: &GeometryError, flags: &Flags) -> String {
     let message = flags.in_text(&flags.in_front(&e.to_string()));
     match e {
         GeometryError::Limit(exceeded) => format!("{message}; allow a larger --tolerance, or {}", raise(exceeded)),
@@ -66,7 +66,7 @@ pub fn raise(exceeded: &Exceeded) -> String {
 }
 
 /// Returns the message of an error about a picture, with advice.
-pub(crate) fn picture(e: &pathwarp_raster::Error) -> String {
+pub(crate) fn picture_message(e: &pathwarp_raster::Error) -> String {
     match e {
         pathwarp_raster::Error::TooLarge { exceeded, .. } | pathwarp_raster::Error::TooMuch(exceeded) => {
             format!("{e}; {}", raise(exceeded))
@@ -76,7 +76,7 @@ pub(crate) fn picture(e: &pathwarp_raster::Error) -> String {
 }
 
 /// Returns the message of an error about a surface in space, with advice.
-pub fn surface(e: &pathwarp_solid::artwork::Error) -> String {
+pub fn surface_message(e: &pathwarp_solid::artwork::Error) -> String {
     match e {
         pathwarp_solid::artwork::Error::TooMany { exceeded, .. } => {
             format!("{e}; allow a larger --tolerance, or {}", raise(exceeded))
@@ -85,7 +85,7 @@ pub fn surface(e: &pathwarp_solid::artwork::Error) -> String {
     }
 }
 
-/// Describes artwork that the page cuts off and the map stretches, and the frame that prevents it.
+/// Warns of artwork beyond the page's edge that the map stretches, and names the frame that has room for it.
 pub(crate) fn stretched(uncut: Rect, stretch: f64) -> String {
     // Round outwards to three figures.
     let digits = (2.0 - uncut.width().max(uncut.height()).log10().floor()).clamp(0.0, 9.0) as usize;
@@ -166,7 +166,7 @@ impl Flags {
     }
 
     /// Adds the parameters of `other`.
-    pub fn and(mut self, other: Self) -> Self {
+    pub fn with(mut self, other: Self) -> Self {
         self.params.extend(other.params);
         for (name, values) in other.names {
             self.names.entry(name).or_default().extend(values);
@@ -185,7 +185,7 @@ impl Flags {
         if self.params.contains(name) { format!("--{message}") } else { message.to_owned() }
     }
 
-    /// Replaces `` `name` `` and `` `name value` `` by `--name` and `--name value` where `name` is a parameter.
+    /// Replaces `` `name` `` and `` `name value` `` by `--name` and `--name value` where `name` is a parameter of several letters.
     pub fn in_text(&self, message: &str) -> String {
         let is_param = |span: &str| {
             let mut words = span.split(' ');

@@ -32,12 +32,12 @@ impl ForeignWord {
         self.command?.split(' ').next()
     }
 
-    /// Returns `true` if `wanted`, which is [`plain`], is one of the names or a part of its menu path.
+    /// Returns `true` if `wanted`, reduced by [`plain`], is one of the names or a part of a menu path.
     fn is_called(&self, wanted: &str) -> bool {
         self.words.iter().any(|w| plain(w) == wanted || w.split(MENU_SEPARATOR).any(|part| plain(part) == wanted))
     }
 
-    /// Returns `true` if all words of `wanted` are in one of the names, or in the name of the program.
+    /// Returns `true` if all words of `wanted`, reduced by [`plain`], are in one of the names, or in the name of the program.
     fn mentions(&self, wanted: &str) -> bool {
         self.words.iter().any(|w| {
             let known = plain(&format!("{} {w}", self.program.unwrap_or_default()));
@@ -93,7 +93,7 @@ fn presets(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     let is_preset = |info: &Info, p: &Param| info.gallery.is_some_and(|g| g.presets == p.name);
     let takes_names = |(info, p): &(&Info, &Param)| matches!(p.kind, Kind::NameOrFile(_)) || is_preset(info, p);
     let mut known: Vec<_> = params.filter(takes_names).filter(|(_, p)| p.names().contains(&&*name)).collect();
-    // Shapes come last.
+    // Shapes, the presets of path parameters, come last.
     known.sort_by_key(|(_, p)| p.kind == Kind::Path);
     let lines = known.into_iter().map(|(info, p)| {
         let line = format!("pathwarp {} IN.svg --{} {name} -o OUT.svg", info.name, p.name);
@@ -107,7 +107,7 @@ fn presets(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
 }
 
 /// Explains a word that was typed as a command but is none.
-pub fn meant(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
+pub fn suggestion(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     let preset = presets(catalogue, word);
     // A program's word that is also a preset's name means the same deformation, which the preset's line shows.
     let is_meant = |w: &ForeignWord| w.program.is_none() || (preset.is_none() && w.command.is_some());
@@ -153,8 +153,8 @@ fn without_accent(c: char) -> Option<char> {
 }
 
 /// Returns the text of `pathwarp help WORD`; `title` describes a subcommand. `None` if the word is unknown.
-pub fn help(catalogue: &dyn Catalogue, word: &str, title: impl Fn(&str) -> Option<String>) -> Option<String> {
-    let mut out = presets(catalogue, word).map(|p| p + "\n\n").unwrap_or_default();
+pub fn help(plane: &dyn Catalogue, word: &str, title: impl Fn(&str) -> Option<String>) -> Option<String> {
+    let mut out = presets(plane, word).map(|p| p + "\n\n").unwrap_or_default();
     for entry in entries_for(word) {
         let program = entry.program.map(|p| format!("{p}, ")).unwrap_or_default();
         let _ = write!(out, "{program}{}:", entry.words[0]);
@@ -166,7 +166,7 @@ pub fn help(catalogue: &dyn Catalogue, word: &str, title: impl Fn(&str) -> Optio
         let _ = write!(out, "{text}{line}\n\n");
     }
     if out.is_empty() {
-        for catalogue in [catalogue, &Registry3::builtin()] {
+        for catalogue in [plane, &Registry3::builtin()] {
             let solid = if catalogue.is_solid() { "solid " } else { "" };
             for info in catalogue.infos().into_iter().filter(|info| has_in_help(info, word)) {
                 let _ = writeln!(out, "{word} is in the help of {solid}{} — {}", info.name, info.title);

@@ -88,7 +88,7 @@ impl Failure {
         match self {
             Self::Usage(m) | Self::Input(m) | Self::Limited(m, ..) | Self::Output(m) | Self::Geometry(m) => m.clone(),
             Self::Library { error, input, .. } => {
-                let message = advice::error(error, flags);
+                let message = advice::error_message(error, flags);
                 input.as_ref().map_or_else(|| message.clone(), |i| prefixed(i, &message))
             }
         }
@@ -132,7 +132,7 @@ impl From<pathwarp::Error> for Failure {
 impl From<pathwarp_raster::Error> for Failure {
     fn from(e: pathwarp_raster::Error) -> Self {
         use pathwarp_raster::Error::{TooLarge, TooMuch};
-        let message = advice::picture(&e);
+        let message = advice::picture_message(&e);
         match e {
             TooLarge { exceeded, .. } | TooMuch(exceeded) => Self::Limited(message, exceeded, 3),
             _ => Self::Input(message),

@@ -31,7 +31,7 @@ const SHEETS: [[f64; 2]; 8] = [
 ];
 
 /// Returns the reason why the page of a drawing stays under `--fit auto`, if it does.
-pub(crate) fn stays(doc: &Document, options: &CommonOptions, recipe: &Recipe) -> Option<&'static str> {
+pub(crate) fn reason_to_stay(doc: &Document, options: &CommonOptions, recipe: &Recipe) -> Option<&'static str> {
     let mut values = recipe.steps.iter().flat_map(|s| s.args.iter()).flat_map(|(_, values)| values);
     if options.frame == FrameChoice::ViewBox || values.any(|v| v.contains("%page")) {
         return Some("the steps refer to it");
@@ -67,7 +67,7 @@ fn is_paper([w, h]: [f64; 2]) -> bool {
 pub struct PageNews {
     /// The page before and after, in user units, if it is adapted.
     pub change: Option<[Rect; 2]>,
-    /// The scale of the result, as a share of its size, that keeps it on its page.
+    /// The factor by which the result is scaled to stay on its page, under `--fit shrink`.
     pub(crate) shrunk: Option<f64>,
     /// `true` if the program decided on the change, under `--fit auto`.
     pub(crate) is_automatic: bool,
@@ -96,7 +96,7 @@ impl PageNews {
         }
     }
 
-    /// Reports that `--fit auto` has changed the page, or that `--fit shrink` keeps the result on it.
+    /// Reports that `--fit auto` enlarged the page, or moved it when nothing was left on it, or that `--fit shrink` keeps the result on it.
     pub fn note(&self) -> Option<String> {
         if let Some(scale) = self.shrunk {
             return Some(match three_figures(100.0 * scale).as_str() {
@@ -148,7 +148,7 @@ fn overhang(o: Overhang, stays: Option<&str>) -> String {
 /// The changes of the pages of a batch: one warning of each kind for all.
 #[derive(Debug, Default)]
 pub struct PageCounts {
-    /// The number of inputs whose artwork extends past the page.
+    /// The number of inputs whose artwork extends past the page, those with blank pages included.
     overhangs: usize,
     /// The largest share of the page's size by which artwork extends past it, with the input concerned.
     most: Option<(f64, String)>,

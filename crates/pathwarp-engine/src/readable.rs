@@ -6,16 +6,16 @@ use std::borrow::Cow;
 
 /// Most characters of a message that are shown; an id or name in it can be as long as its file.
 const LONGEST: usize = 2000;
-/// Number of these characters before the gap. The others are from the end of the message, which tells what to do.
+/// How many of them stand before the gap; the rest stand after it, since the end of a message tells what to do.
 const HEAD: usize = 1400;
 
 /// Prepares a name for a table: control characters become escapes.
-pub fn name(name: &str) -> Cow<'_, str> {
+pub fn safe_name(name: &str) -> Cow<'_, str> {
     escaped(name, is_unsafe_in_names)
 }
 
 /// Prepares a message: lines and tabs are kept, and a very long text gets a gap in its middle.
-pub fn message(message: &str) -> Cow<'_, str> {
+pub fn safe_message(message: &str) -> Cow<'_, str> {
     let length = message.chars().count();
     if length <= LONGEST {
         return escaped(message, is_unsafe);
@@ -79,21 +79,21 @@ mod tests {
 
     #[test]
     fn control_characters_are_shown_and_do_nothing() {
-        assert_eq!(name("plain “ünï” name"), "plain “ünï” name");
-        assert_eq!(name("\x1b[31mred\nline\u{9b}2J"), "\\u{1b}[31mred\\nline\\u{9b}2J");
-        assert_eq!(message("a\nb\tc\x07"), "a\nb\tc\\u{7}");
-        assert_eq!(name("a\u{202e}gvs.svg"), "a\\u{202e}gvs.svg");
+        assert_eq!(safe_name("plain “ünï” name"), "plain “ünï” name");
+        assert_eq!(safe_name("\x1b[31mred\nline\u{9b}2J"), "\\u{1b}[31mred\\nline\\u{9b}2J");
+        assert_eq!(safe_message("a\nb\tc\x07"), "a\nb\tc\\u{7}");
+        assert_eq!(safe_name("a\u{202e}gvs.svg"), "a\\u{202e}gvs.svg");
         assert_eq!(escaped_json("{\"a\": \"\u{9b}31m\u{7f}ä\"\n}".into()), "{\"a\": \"\\u009b31m\\u007fä\"\n}");
     }
 
     #[test]
     fn long_messages_keep_both_ends() {
         let long = format!("error in {}: do this", "ä".repeat(500_000));
-        let shown = message(&long);
+        let shown = safe_message(&long);
         assert!(shown.starts_with("error in ä") && shown.ends_with("ä: do this"), "{shown}");
         assert!(shown.chars().count() < LONGEST + 50, "{shown}");
         let short = "x".repeat(LONGEST);
-        assert_eq!(message(&short), short);
+        assert_eq!(safe_message(&short), short);
     }
 
     #[test]

@@ -29,7 +29,6 @@ use serde::{Deserialize, Serialize};
 use std::path::{Component, Path, PathBuf};
 use toml::Value;
 
-/// The version of the format.
 const VERSION: i64 = 1;
 
 /// Keys of a step that, like [`INVERSE`], are not parameters of its deformation.
@@ -77,7 +76,7 @@ pub fn from_text(catalogue: &dyn Catalogue, text: &str, folder: &Path, external:
 /// The folder that paths in a recipe refer to.
 struct Folder<'a> {
     path: &'a Path,
-    /// `true` if paths may lead anywhere.
+    /// `true` if absolute paths are allowed; relative ones may lead out of the folder in any case.
     external: bool,
 }
 
@@ -149,7 +148,7 @@ fn parse_step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_
                         let advice = "give it on the command line";
                         return Err(format!("{key} is not for recipes, which write no files; {advice}"));
                     }
-                    step.args.push(key, found_from(folder, param, v).map_err(|e| format!("{key}: {e}"))?);
+                    step.args.push(key, path_from_here(folder, param, v).map_err(|e| format!("{key}: {e}"))?);
                 }
             }
         }
@@ -175,7 +174,7 @@ fn as_typed(value: &Value) -> Option<Vec<String>> {
     }
 }
 
-/// Returns `true` if a value names a file, so that its meaning depends on the folder.
+/// Returns `true` if a value names a file, so that its meaning depends on the folder. A path parameter takes path data, too.
 fn names_file(param: &Param, value: &str, folder: &Path) -> bool {
     match param.kind {
         Kind::File | Kind::Save => true,
@@ -185,8 +184,9 @@ fn names_file(param: &Param, value: &str, folder: &Path) -> bool {
     }
 }
 
-/// Makes the path in a value relative to the current folder. The file must be a regular one, and the path relative unless `external`.
-fn found_from(folder: &Folder<'_>, param: &Param, value: String) -> Result<String, String> {
+/// Turns a path relative to the recipe's folder into one relative to the current folder; other values stay. Refuses what is not a regular
+/// file, and an absolute path unless `external`.
+fn path_from_here(folder: &Folder<'_>, param: &Param, value: String) -> Result<String, String> {
     if !names_file(param, &value, folder.path) {
         return Ok(value);
     }

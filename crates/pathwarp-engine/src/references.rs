@@ -3,7 +3,7 @@
 use crate::advice;
 use crate::catalogue::Catalogue;
 use crate::failure::Failure;
-use crate::input::{described, outline, read_data_file, split_reference, unreadable};
+use crate::input::{described, gimp_outline, read_data_file, split_reference, unreadable};
 use crate::options::Reading;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Affine, Point};
@@ -13,7 +13,7 @@ use pathwarp::{Error, Outline};
 use pathwarp_svg::Document;
 use std::path::{Path, PathBuf};
 
-/// Looks up every file that a recipe refers to. References to the input document, `#NAME`, stay open.
+/// Looks up every file that a recipe refers to; paths keep their user units. References to the input document, `#NAME`, stay open.
 pub fn resolve_files(catalogue: &dyn Catalogue, recipe: &mut Recipe, reading: &Reading) -> Result<(), Failure> {
     let in_file =
         |reference: &str| names_file(reference, HERE.as_ref()).then(|| Ok(look_up(reference, reading)?.0)).transpose();
@@ -26,8 +26,8 @@ pub fn resolve_files(catalogue: &dyn Catalogue, recipe: &mut Recipe, reading: &R
     Ok(())
 }
 
-/// Looks up the references that [`resolve_files`] leaves open: `in_input` finds a path of the input document. Returns the names of these
-/// paths, which are guides, not artwork.
+/// Looks up the references that [`resolve_files`] leaves open: `in_input` finds a path of the input document, before a shape of that name.
+/// Returns the names of these paths, which are guides, not artwork.
 pub(crate) fn resolve_names(
     registry: &Registry,
     recipe: &mut Recipe,
@@ -84,7 +84,7 @@ pub fn names_file(reference: &str, folder: &Path) -> bool {
     !is_name && (!is_shape(reference) || folder.join(split_reference(reference).0).is_file())
 }
 
-/// Stands for the current folder.
+/// The current folder, as a path.
 pub const HERE: &str = "";
 
 /// Looks up the path that `FILE#NAME` or `FILE` names, and scales it to px.
@@ -96,7 +96,7 @@ pub fn in_px(reference: &str, reading: &Reading) -> Result<Outline, Error> {
 /// Returns the outline that a reference to a file names, and the map from its user units to px.
 fn look_up(reference: &str, reading: &Reading) -> Result<(Outline, Affine), Error> {
     let (file, name) = split_reference(reference);
-    if let Some(outline) = outline(&file, name, &reading.limits)? {
+    if let Some(outline) = gimp_outline(&file, name, &reading.limits)? {
         return Ok((outline, Affine::IDENTITY));
     }
     let shown = file.display();

@@ -105,7 +105,7 @@ pub struct PathFile {
     pub paths: Vec<GimpPath>,
 }
 
-/// The readable part of a damaged file.
+/// The readable part of a file that may be damaged.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Salvaged {
@@ -116,7 +116,7 @@ pub struct Salvaged {
 }
 
 /// Returns the shortest text that parses to `v`: as an `f32` if `v` is one, as in GIMP's files, else as an `f64`.
-pub(crate) fn shortest(v: f64) -> String {
+pub(crate) fn shortest_number(v: f64) -> String {
     let single = v as f32;
     // Adding 0.0 turns -0 into 0.
     if f64::from(single) == v { (single + 0.0).to_string() } else { (v + 0.0).to_string() }
@@ -154,10 +154,10 @@ mod tests {
     #[test]
     fn numbers_survive_a_round_trip() {
         for v in [0.0, 112.277_374_267_578_12, 1e7, -0.1, f64::from(f32::MIN_POSITIVE), 1.0 / 3.0, 34_002_432.0] {
-            let back: f64 = shortest(v).parse().unwrap();
+            let back: f64 = shortest_number(v).parse().unwrap();
             assert_eq!(back as f32, v as f32);
             assert!(back == v || f64::from(v as f32) == v, "{v}");
         }
-        assert_eq!(shortest(f64::from(12.55f32)), "12.55");
+        assert_eq!(shortest_number(f64::from(12.55f32)), "12.55");
     }
 }

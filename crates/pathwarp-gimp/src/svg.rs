@@ -5,7 +5,7 @@
 //! viewBox avoid any scaling.
 
 use crate::error::Error;
-use crate::path::{FileKind, GimpPath, PathFile, Stroke, shortest};
+use crate::path::{FileKind, GimpPath, PathFile, Stroke, shortest_number};
 use pathwarp::Outline;
 use pathwarp::engine::decimal::trimmed;
 use pathwarp::kurbo::Point;
@@ -115,7 +115,7 @@ fn single_anchor_loop(s: &Subpath) -> Option<Stroke> {
 /// The outer handles at the ends of open strokes carry no geometry and are lost.
 #[must_use]
 pub fn to_svg(size: [f64; 2], paths: &[GimpPath], decimals: Option<u8>) -> String {
-    let [w, h] = size.map(shortest);
+    let [w, h] = size.map(shortest_number);
     // A name that is no id is also written as Inkscape's label.
     let is_labelled = paths.iter().any(|p| !is_id(&p.name));
     let inkscape = if is_labelled { format!("\n     xmlns:inkscape=\"{INKSCAPE}\"") } else { String::new() };
@@ -145,7 +145,7 @@ pub fn to_svg(size: [f64; 2], paths: &[GimpPath], decimals: Option<u8>) -> Strin
 
 /// Formats the path data of a stroke.
 fn path_data(s: &Stroke, decimals: Option<u8>) -> String {
-    let number = |v: f64| decimals.map_or_else(|| shortest(v), |d| trimmed(v, usize::from(d)));
+    let number = |v: f64| decimals.map_or_else(|| shortest_number(v), |d| trimmed(v, usize::from(d)));
     let point = |p: Point| format!("{},{}", number(p.x), number(p.y));
     let triples: Vec<[Point; 3]> = s.triples().collect();
     let Some((first, last)) = triples.first().zip(triples.last()) else { return String::new() };

@@ -1,11 +1,11 @@
-//! Painted areas as polygons, with strokes expanded by the renderer.
+//! Painted areas as polygons (of the nonzero rule), with strokes expanded by the renderer.
 
 use crate::polygon::Polygon;
 use kurbo::{CubicBez, ParamCurve as _, Point, QuadBez};
 use resvg::tiny_skia::{Path, PathBuilder, PathSegment, StrokeDash, Transform};
 use resvg::usvg::{self, Node, Tree};
 
-/// The painted area of a drawing's strokes, or of its fills if it has no strokes.
+/// The painted area of a drawing: of each path the stroke or, if it has none, the fill.
 pub fn painted(tree: &Tree) -> Polygon {
     let mut rings = Vec::new();
     collect(tree.root(), &mut rings);
@@ -25,20 +25,21 @@ fn collect(g: &usvg::Group, out: &mut Vec<Vec<Point>>) {
     }
 }
 
-/// The outline of a stroke. The renderer's stroker ignores lengths below 1/4096 and works to a quarter of a unit, so everything is
-/// enlarged. It also takes a cubic for a line if its middle is off by up to a 450th of its length, so curves are divided.
+/// The outline of a stroke. The renderer's stroker ignores lengths below 1/4096 and works to a quarter of a unit at resolution 1, so
+/// everything is enlarged. It also takes a cubic for a line if its middle is off by up to a 450th of its length, so curves are divided.
 fn stroked(path: &Path, stroke: &usvg::Stroke) -> Path {
-    const LARGE: f32 = 64.0;
+    const ENLARGEMENT: f32 = 64.0;
+    const RESOLUTION: f32 = 100.0;
     let scaled = |k: f32, path: Path| path.transform(Transform::from_scale(k, k)).unwrap();
     let mut style = stroke.to_tiny_skia();
-    style.width *= LARGE;
+    style.width *= ENLARGEMENT;
     style.dash = None;
-    let mut path = scaled(LARGE, path.clone());
+    let mut path = scaled(ENLARGEMENT, path.clone());
     if let Some(dashes) = stroke.dasharray() {
-        let dashes = dashes.iter().map(|d| d * LARGE).collect();
-        path = path.dash(&StrokeDash::new(dashes, stroke.dashoffset() * LARGE).unwrap(), 100.0).unwrap();
+        let dashes = dashes.iter().map(|d| d * ENLARGEMENT).collect();
+        path = path.dash(&StrokeDash::new(dashes, stroke.dashoffset() * ENLARGEMENT).unwrap(), RESOLUTION).unwrap();
     }
-    scaled(1.0 / LARGE, divided(&path).stroke(&style, 100.0).unwrap())
+    scaled(1.0 / ENLARGEMENT, divided(&path).stroke(&style, RESOLUTION).unwrap())
 }
 
 /// Divides each curve of a path into sixteen parts.
@@ -81,19 +82,21 @@ fn divided(path: &Path) -> Path {
     out.finish().unwrap()
 }
 
-/// Samples a path so finely that the images of its chords are close to the image of the path.
+/// Samples a path so finely that, once the polygon is mapped point by point, its sides are close to the image of the path.
 fn flatten(path: &Path, out: &mut Vec<Vec<Point>>) {
-    const MIN: f64 = 16.0;
-    const LONGEST: f64 = 0.35;
+    /// The least number of samples of a curve.
+    const MIN_SAMPLES: f64 = 16.0;
+    /// The largest distance of samples, in units.
+    const MAX_STEP: f64 = 0.35;
     let point = |p: resvg::tiny_skia::Point| Point::new(f64::from(p.x), f64::from(p.y));
     let mut ring: Vec<Point> = Vec::new();
     let line = |ring: &mut Vec<Point>, to: Point| {
         let from = *ring.last().unwrap();
-        let n = ((to - from).hypot() / LONGEST).ceil().max(1.0);
+        let n = ((to - from).hypot() / MAX_STEP).ceil().max(1.0);
         ring.extend((1..=n as u32).map(|i| from.lerp(to, f64::from(i) / n)));
     };
     let curve = |ring: &mut Vec<Point>, length: f64, at: &dyn Fn(f64) -> Point| {
-        let n = (length / LONGEST).ceil().max(MIN);
+        let n = (length / MAX_STEP).ceil().max(MIN_SAMPLES);
         ring.extend((1..=n as u32).map(|i| at(f64::from(i) / n)));
     };
     for s in path.segments() {

@@ -99,7 +99,7 @@ fn draw_as_picture(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
     }
     let added = render(file, group).and_then(|picture| {
         let Some(picture) = picture else { return Ok(None) };
-        Ok(Some((image::add(file, &picture.pixmap, true)?, picture.area)))
+        Ok(Some((image::add_bitmap(file, &picture.pixmap, true)?, picture.area)))
     });
     match added {
         Ok(Some((object, area))) => {

@@ -57,14 +57,14 @@ pub(crate) fn draw_over(stream: &mut Stream, object: Ref, area: Rect) {
     stream.object_at(object, unit);
 }
 
-/// Adds the pixels of a picture. If it cannot be decoded, it is not drawn, as in browsers; if it is too large, that is an error.
+/// Adds the pixels of a picture as stored, not turned. If it cannot be decoded, it is not drawn, as in browsers; if too large, this fails.
 fn add_pixels(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
     if file.failed.is_some() {
         return None;
     }
     let added = spend(file, header_size(data).ok()?, DECODING)
         .and_then(|()| Picture::read_stored_within(data, &file.options.limits.for_input(data.len())))
-        .and_then(|picture| add(file, &picture.pixmap, smooth));
+        .and_then(|picture| add_bitmap(file, &picture.pixmap, smooth));
     match added {
         Err(e @ (Error::TooLarge { .. } | Error::TooMuch(_))) => {
             file.failed = Some(e);
@@ -84,7 +84,7 @@ fn spend(file: &File<'_>, (width, height): (u32, u32), work: f64) -> Result<(), 
 }
 
 /// Adds a bitmap, with its transparency if it has any.
-pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Result<Ref, Error> {
+pub(crate) fn add_bitmap(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Result<Ref, Error> {
     let (width, height) = (pixmap.width(), pixmap.height());
     spend(file, (width, height), COMPRESSING)?;
     let mut colors = Vec::with_capacity(pixmap.pixels().len() * 3);
@@ -94,7 +94,7 @@ pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Result<
         colors.extend([c.red(), c.green(), c.blue()]);
         opacities.push(c.alpha());
     }
-    let mut add = |bytes: &[u8], space: Name<'_>, mask: Option<Ref>| {
+    let mut add_plane = |bytes: &[u8], space: Name<'_>, mask: Option<Ref>| {
         let object = file.new_ref();
         let bytes = deflated(bytes);
         let mut out = file.pdf.image_xobject(object, &bytes);
@@ -107,11 +107,11 @@ pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Result<
         object
     };
     let is_opaque = opacities.iter().all(|a| *a == u8::MAX);
-    let mask = (!is_opaque).then(|| add(&opacities, Name(b"DeviceGray"), None));
-    Ok(add(&colors, Name(b"DeviceRGB"), mask))
+    let mask = (!is_opaque).then(|| add_plane(&opacities, Name(b"DeviceGray"), None));
+    Ok(add_plane(&colors, Name(b"DeviceRGB"), mask))
 }
 
-/// Adds a JPEG as it is, if PDF programs show it as browsers do, which takes one or three components of 8 bits.
+/// Adds a JPEG as it is, if it has one or three components of 8 bits. Others look different in PDF programs and in browsers.
 fn add_jpeg(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
     let frame = JpegFrame::find(data)?;
     let space = match frame.components {

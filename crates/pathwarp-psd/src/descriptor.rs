@@ -14,7 +14,7 @@ pub(crate) enum Value {
     Number(f64),
     Numbers(Vec<f64>),
     /// The value of an enumeration, or a text.
-    Name(String),
+    Word(String),
     Items(Items),
     Other,
 }
@@ -33,8 +33,8 @@ impl Value {
         if let Self::Numbers(n) = self { Some(n) } else { None }
     }
 
-    pub(crate) fn name(&self) -> Option<&str> {
-        if let Self::Name(n) = self { Some(n) } else { None }
+    pub(crate) fn word(&self) -> Option<&str> {
+        if let Self::Word(w) = self { Some(w) } else { None }
     }
 
     pub(crate) fn items(&self) -> Option<&Items> {
@@ -54,9 +54,9 @@ fn descriptor(input: &mut ByteReader<'_>, depth: usize) -> Result<Items, Error> 
     text_and_class(input)?;
     let mut out = Items::new();
     for _ in 0..count(input)? {
-        let key = id(input)?;
+        let name = key(input)?;
         let kind = input.tag()?;
-        out.push((key, value(input, kind, depth)?));
+        out.push((name, value(input, kind, depth)?));
     }
     Ok(out)
 }
@@ -76,7 +76,7 @@ pub(crate) fn text(input: &mut ByteReader<'_>) -> Result<String, Error> {
 }
 
 /// Reads a key: four bytes if its length word is zero, else that many bytes.
-fn id(input: &mut ByteReader<'_>) -> Result<String, Error> {
+fn key(input: &mut ByteReader<'_>) -> Result<String, Error> {
     let n = count(input)?;
     let bytes = input.take(if n == 0 { 4 } else { n })?;
     Ok(String::from_utf8_lossy(bytes).trim_end().to_owned())
@@ -104,12 +104,12 @@ fn value(input: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Valu
         b"comp" => input.take(8).map(|_| Value::Other)?,
         b"bool" => Value::Number(f64::from(input.u8()?)),
         b"enum" => {
-            id(input)?;
-            Value::Name(id(input)?)
+            key(input)?;
+            Value::Word(key(input)?)
         }
-        b"TEXT" => Value::Name(text(input)?),
+        b"TEXT" => Value::Word(text(input)?),
         b"Objc" | b"GlbO" => Value::Items(descriptor(input, depth + 1)?),
-        // Objects of one class, as a descriptor of each key with all its values.
+        // Objects of one class: their number, and a descriptor with the values of all of them for each key.
         b"ObAr" => {
             input.u32()?;
             Value::Items(descriptor(input, depth + 1)?)
@@ -142,11 +142,11 @@ fn reference(input: &mut ByteReader<'_>) -> Result<(), Error> {
         let kind = input.tag()?;
         text_and_class(input)?;
         match &kind {
-            b"prop" => drop(id(input)?),
+            b"prop" => drop(key(input)?),
             b"Clss" => {}
             b"Enmr" => {
-                id(input)?;
-                id(input)?;
+                key(input)?;
+                key(input)?;
             }
             b"rele" | b"Idnt" | b"indx" => drop(input.u32()?),
             b"name" => drop(text(input)?),
@@ -158,7 +158,7 @@ fn reference(input: &mut ByteReader<'_>) -> Result<(), Error> {
 
 fn text_and_class(input: &mut ByteReader<'_>) -> Result<(), Error> {
     text(input)?;
-    id(input).map(drop)
+    key(input).map(drop)
 }
 
 /// A reader over a window of a file.

@@ -40,7 +40,7 @@ fn versioned(input: &mut ByteReader<'_>) -> Result<Items, Error> {
 
 /// Converts the descriptor of a warp; `None` if it has no style.
 fn warp(items: &Items, input: &ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
-    let Some(style) = get(items, "warpStyle").and_then(Value::name) else { return Ok(None) };
+    let Some(style) = get(items, "warpStyle").and_then(Value::word) else { return Ok(None) };
     let number = |key: &str| get(items, key).and_then(Value::number).unwrap_or(0.0);
     let custom = get(items, "customEnvelopeWarp").and_then(Value::items);
     let mesh = match custom {
@@ -53,7 +53,7 @@ fn warp(items: &Items, input: &ByteReader<'_>) -> Result<Option<LayerWarp>, Erro
         value: number("warpValue"),
         perspective: number("warpPerspective"),
         perspective_other: number("warpPerspectiveOther"),
-        vertical: get(items, "warpRotate").and_then(Value::name) == Some("Vrtc"),
+        vertical: get(items, "warpRotate").and_then(Value::word) == Some("Vrtc"),
         mesh,
     }))
 }

@@ -31,7 +31,7 @@ pub(crate) fn use_threads(count: usize) {
     THREADS.store(count, Ordering::Relaxed);
 }
 
-/// A switch that ends work. It is static because the work's limits hold it, and is reused later.
+/// A switch that ends work. Limits hold a `&'static` reference to it, so it is never freed; a dropped one is reused.
 struct Switch(&'static AtomicBool);
 
 static SWITCHES: Mutex<Vec<&'static AtomicBool>> = Mutex::new(Vec::new());
@@ -75,7 +75,7 @@ impl<E: Borrow<End>> Drop for Ending<E> {
 
 impl End {
     /// Waits without the interpreter's lock. Meanwhile, it calls `poll` and checks Python's signals. If one of them raises an exception,
-    /// the switch is turned, and the exception is returned at the end, or after `patience` more checks.
+    /// the switch is turned, and the exception is returned at the end, or after `patience` more intervals.
     fn wait(
         &self,
         py: Python<'_>,
@@ -123,7 +123,7 @@ pub(crate) fn on_threads<T: Send>(py: Python<'_>, work: impl FnOnce(&'static Ato
 
 /// Calls `work`, which owns its data, on the threads of this process, without the interpreter's lock. After Ctrl-C, it returns soon, even
 /// if `work` goes on. `poll` is called from time to time.
-pub(crate) fn on_threads_alone<T: Send + 'static>(
+pub(crate) fn on_threads_abandonable<T: Send + 'static>(
     py: Python<'_>,
     poll: impl FnMut() -> PyResult<()>,
     work: impl FnOnce(&'static AtomicBool) -> T + Send + 'static,
@@ -137,7 +137,7 @@ pub(crate) fn on_threads_alone<T: Send + 'static>(
     let result = Arc::new(Mutex::new(None));
     let (ending, slot) = (Ending(Arc::clone(&end)), Arc::clone(&result));
     pool.spawn(move || {
-        // In this order: the switch is released before the end is signalled.
+        // They are dropped in reverse order: the switch is released before the end is signalled, so that the next call can reuse it.
         let _ending = ending;
         let _switch = switch;
         // A panic must not end the process; the missing result is reported.

@@ -1,10 +1,10 @@
 //! The class `Warper`: [`pathwarp_engine::Warper`] for Python. Work is done without the interpreter's lock;
-//! after Ctrl-C, `on_threads` awaits its end, `on_threads_alone` does not.
+//! after Ctrl-C, `on_threads` awaits its end, `on_threads_abandonable` does not.
 
 use crate::errors::{exception, usage};
 use crate::function::Function;
 use crate::plugins;
-use crate::threads::{on_threads, on_threads_alone};
+use crate::threads::{on_threads, on_threads_abandonable};
 use crate::{arrays, outline};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use pathwarp::Outline;
@@ -185,14 +185,14 @@ impl Warper {
     /// Checks the map: for each check its name, what was checked, and what is wrong.
     fn check(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, String, Vec<String>)>> {
         let warper = self.engine.clone();
-        let checked = on_threads_alone(py, || Ok(()), move |stop| warper.stopped_by(stop).check())?;
+        let checked = on_threads_abandonable(py, || Ok(()), move |stop| warper.stopped_by(stop).check())?;
         Ok(self.done(py, checked)?.into_iter().map(|c| (c.name, c.detail, c.faults)).collect())
     }
 
     /// Bends a path: its data and report.
     fn warp_path<'py>(&self, py: Python<'py>, data: &str) -> PyResult<(String, Bound<'py, PyDict>)> {
         let (warper, data) = (self.engine.clone(), data.to_owned());
-        let warped = on_threads_alone(py, || Ok(()), move |stop| warper.stopped_by(stop).warp_path(&data))?;
+        let warped = on_threads_abandonable(py, || Ok(()), move |stop| warper.stopped_by(stop).warp_path(&data))?;
         let warped = self.done(py, warped)?;
         let report = report(py, &warped)?;
         Ok((warped.path.data, report))
@@ -213,7 +213,7 @@ impl Warper {
             let warper = warper.stopped_by(stop);
             if quadratic { warper.warp_outline_to_quadratics(&outline) } else { warper.warp_outline(&outline) }
         };
-        let warped = self.done(py, on_threads_alone(py, || Ok(()), work)?)?;
+        let warped = self.done(py, on_threads_abandonable(py, || Ok(()), work)?)?;
         let (verbs, coordinates) = outline::verbs(&warped.path.path);
         Ok((verbs, coordinates.into_pyarray(py), report(py, &warped)?))
     }
@@ -235,7 +235,7 @@ impl Warper {
             told = now;
             news.map_or(Ok(()), |p| p.call1((now,)).map(drop))
         };
-        let warped: Vec<_> = on_threads_alone(py, &mut tell, move |stop| {
+        let warped: Vec<_> = on_threads_abandonable(py, &mut tell, move |stop| {
             let warper = warper.stopped_by(stop);
             // Drawings left after a stop are dropped; the exception behind it is then returned instead of the list.
             let warp = |(data, name): &(PyBackedBytes, Option<PathBuf>)| {

@@ -293,10 +293,10 @@ impl Values<'_, '_, '_> {
             Kind::Spacing if raw.eq_ignore_ascii_case("normal") => Some("normal".into()),
             Kind::Spacing => self.length(p, raw, Sign::Any, strict),
             Kind::Link | Kind::Dashes if raw.eq_ignore_ascii_case("none") => Some("none".into()),
-            Kind::Dashes => list(raw, |v| self.length(p, v, Sign::Positive, false)),
+            Kind::Dashes => list(raw, |v| self.length(p, v, Sign::NotNegative, false)),
             Kind::FontSize => match text::size(raw, self.parent_font) {
                 Some(px) => Some(format!("{px}px").into()),
-                None => self.length(p, raw, Sign::Positive, strict),
+                None => self.length(p, raw, Sign::NotNegative, strict),
             },
             Kind::AnyKeywords => (!raw.is_empty()).then(|| lower(raw)),
             Kind::FontWeight => text::weight(raw, 400).map(|_| lower(raw)),
@@ -313,7 +313,7 @@ impl Values<'_, '_, '_> {
     fn length<'v>(&self, p: &Property, raw: &'v str, sign: Sign, strict: bool) -> Option<Cow<'v, str>> {
         let converts = self.converts_percent || matches!(p.kind, Kind::FontSize | Kind::Spacing);
         let base = converts.then(|| self.percentage_base(p));
-        value::known_length(raw, &self.units_for(p), base, sign == Sign::Positive, strict)
+        value::known_length(raw, &self.units_for(p), base, sign == Sign::NotNegative, strict)
     }
 
     /// An attribute of a gradient or pattern, or of one that it refers to. Gradients and patterns have different `names` for it.

@@ -1,4 +1,4 @@
-//! Preserves the style of an edited drawing by overriding rules of its sheets that now match other elements.
+//! Preserves the style of an edited drawing: where rules of its sheets match other elements than before, style attributes override them.
 
 use crate::computed::{MARKERS, is_valid};
 use crate::element::{ComparisonCounter, applying};
@@ -35,6 +35,7 @@ pub fn guarded(
         return Ok(None);
     }
     let counter = ComparisonCounter::new(budget);
+    // The validity of a length does not depend on the font's size, so the root's units serve for all elements.
     let (units, ids) = (root_units(&old_doc), Ids::new(&old_doc));
     let is_valid = |d: &Declaration<'_>| is_valid(d, units, &ids);
     let (mut old_caches, mut new_caches) = (SelectorCaches::default(), SelectorCaches::default());
@@ -46,15 +47,16 @@ pub fn guarded(
         let origin = origins.get(&node.range().start).and_then(|start| starts.get(start)).copied();
         let old_inline = declarations(origin.and_then(|n| n.attribute("style")).unwrap_or_default());
         let new_inline = declarations(node.attribute("style").unwrap_or_default());
-        let old = origin.map_or_else(Vec::new, |n| applying(&old_rules, &[], n, &counter, &mut old_caches));
-        let new = applying(&new_rules, &[], node, &counter, &mut new_caches);
+        let old_by_rules = origin.map_or_else(Vec::new, |n| applying(&old_rules, &[], n, &counter, &mut old_caches));
+        let new_by_rules = applying(&new_rules, &[], node, &counter, &mut new_caches);
         if counter.exceeded() {
             break;
         }
-        if old == new {
+        if old_by_rules == new_by_rules {
             continue;
         }
-        let (old, new) = ([&old, &old_inline.iter().collect()], [&new, &new_inline.iter().collect()]);
+        let old = [&old_by_rules, &old_inline.iter().collect()];
+        let new = [&new_by_rules, &new_inline.iter().collect()];
         let added = corrections(node, old, new, &is_valid);
         if added.is_empty() {
             continue;
@@ -93,15 +95,15 @@ fn corrections(
     let names: BTreeSet<&str> = names.filter(|name| !name.starts_with("--")).collect();
     let mut out = Vec::new();
     for name in names {
-        let last = |all: &[&Declaration<'_>]| {
+        let last_valid = |all: &[&Declaration<'_>]| {
             let sets = |d: &&&Declaration<'_>| d.name == name || (d.name == "marker" && MARKERS.contains(&name));
             all.iter().rev().filter(sets).find(|d| is_valid(d)).map(|d| (d.value.to_string(), d.important))
         };
-        let winner = |[rules, inline]: [&Vec<&Declaration<'_>>; 2]| match (last(rules), last(inline)) {
+        let winner = |[rules, inline]: [&Vec<&Declaration<'_>>; 2]| match (last_valid(rules), last_valid(inline)) {
             (Some(rule), Some(inline)) => Some(if rule.1 && !inline.1 { rule } else { inline }),
             (rule, inline) => inline.or(rule),
         };
-        let (old_inline, new_inline) = (last(old[1]), last(new[1]));
+        let (old_inline, new_inline) = (last_valid(old[1]), last_valid(new[1]));
         // A value that the edit sets counts; otherwise the element keeps the value that it had.
         let wanted = match new_inline {
             Some(inline) if old_inline.is_none_or(|old| old.0 != inline.0) => Some(inline.0),
@@ -111,7 +113,7 @@ fn corrections(
             continue;
         }
         let value = wanted.or_else(|| from_attribute(node, name)).unwrap_or_else(|| "unset".to_owned());
-        let important = if last(new[0]).is_some_and(|rule| rule.1) { "!important" } else { "" };
+        let important = if last_valid(new[0]).is_some_and(|rule| rule.1) { "!important" } else { "" };
         out.push(format!("{name}:{value}{important}"));
     }
     escape(&out.join(";"))

@@ -1,7 +1,7 @@
 //! A table of the properties that determine how a drawing looks, with the values that browsers accept, spelled as usvg 0.49 reads
 //! them.
 //!
-//! The facts are Chromium's computed values. A [`Kind`] other than [`Any`] means that usvg reads the property differently.
+//! The facts are Chromium's computed values. Values of a [`Kind`] other than [`Any`] are rewritten, as usvg reads them differently.
 
 use Kind::{
     Any, AnyKeywords, BaselineShift, Color, Dashes, Filter, FontSize, FontWeight, Geometry, Keyword, Length, Link,
@@ -57,7 +57,7 @@ pub(super) enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sign {
     Any,
-    Positive,
+    NotNegative,
 }
 
 #[rustfmt::skip]
@@ -123,7 +123,7 @@ static PROPERTIES: [Property; 85] = [
     inherited("font-variant-position", "normal", AnyKeywords),
     inherited("font-variation-settings", "normal", Any),
     inherited("font-weight", "400", FontWeight),
-    local("height", "auto", Geometry(Sign::Positive)),
+    local("height", "auto", Geometry(Sign::NotNegative)),
     inherited(
         "image-rendering",
         "auto",
@@ -141,10 +141,10 @@ static PROPERTIES: [Property; 85] = [
     local("opacity", "1", Share),
     local("overflow", "visible", Keyword(&["visible", "hidden", "scroll", "auto", "clip"])),
     inherited("paint-order", "normal", AnyKeywords),
-    local("r", "0", Geometry(Sign::Positive)),
+    local("r", "0", Geometry(Sign::NotNegative)),
     local("rotate", "none", Transform),
-    local("rx", "auto", Geometry(Sign::Positive)),
-    local("ry", "auto", Geometry(Sign::Positive)),
+    local("rx", "auto", Geometry(Sign::NotNegative)),
+    local("ry", "auto", Geometry(Sign::NotNegative)),
     local("scale", "none", Transform),
     inherited("shape-rendering", "auto", Keyword(&["auto", "optimizeSpeed", "crispEdges", "geometricPrecision"])),
     local("stop-color", "black", Color),
@@ -156,7 +156,7 @@ static PROPERTIES: [Property; 85] = [
     inherited("stroke-linejoin", "miter", Keyword(&["miter", "round", "bevel"])),
     inherited("stroke-miterlimit", "4", Number),
     inherited("stroke-opacity", "1", Share),
-    inherited("stroke-width", "1", Length(Sign::Positive)),
+    inherited("stroke-width", "1", Length(Sign::NotNegative)),
     inherited("text-anchor", "start", Keyword(&["start", "middle", "end"])),
     local("text-decoration", "none", AnyKeywords),
     local("text-decoration-style", "solid", AnyKeywords),
@@ -177,7 +177,7 @@ static PROPERTIES: [Property; 85] = [
     local("vector-effect", "none", Keyword(&["none", "non-scaling-stroke"])),
     inherited("visibility", "visible", Keyword(&["visible", "hidden", "collapse"])),
     inherited("white-space", "normal", AnyKeywords),
-    local("width", "auto", Geometry(Sign::Positive)),
+    local("width", "auto", Geometry(Sign::NotNegative)),
     inherited("word-spacing", "0", Spacing),
     inherited("writing-mode", "horizontal-tb", AnyKeywords),
     local("x", "0", Geometry(Sign::Any)),
@@ -199,7 +199,7 @@ const STYLE_ONLY: [&str; 17] = [
     "scale", "text-shadow", "text-transform", "translate", "white-space",
 ];
 
-/// Looks inherited a property by its name in lower case.
+/// Looks up a property by its name in lower case.
 pub(super) fn property(name: &str) -> Option<&'static Property> {
     PROPERTIES.binary_search_by(|p| p.name.cmp(name)).ok().map(|i| &PROPERTIES[i])
 }

@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Size of a drawing that specifies none (CSS 2.1, section 10.3.2).
 const DEFAULT_SIZE: (f64, f64) = (300.0, 150.0);
 
-const MOVING: &str = "animations of style sheets (@keyframes) go the same ways as before";
+const KEYFRAMES_NOTE: &str = "animations of style sheets (@keyframes) go the same ways as before";
 
 /// Bytes of style that take as long to parse or to write as one comparison.
 pub(super) const BYTES_PER_COMPARISON: usize = 16;
@@ -49,7 +49,7 @@ pub(super) struct Tree<'a> {
     pub(super) unsupported: BTreeSet<String>,
     /// The properties that the style sheets declare.
     pub(super) declared: BTreeSet<String>,
-    /// Small differences from what browsers show.
+    /// Small differences from what browsers show: a sentence, and the name or id that it is about.
     pub(super) notes: BTreeSet<(&'static str, String)>,
 }
 
@@ -62,15 +62,15 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     let counter = ComparisonCounter::new(budget);
     let mut caches = SelectorCaches::default();
     let ids = Ids::new(doc);
-    // What each of the ancestors passes on to its children, outermost first.
+    // The values that each ancestor passes on to its children, outermost first.
     let mut ancestors: Vec<(NodeId, Inherited)> = Vec::new();
-    let mut cache: HashMap<&str, Rc<[Declaration<'_>]>> = HashMap::new();
+    let mut long_styles: HashMap<&str, Rc<[Declaration<'_>]>> = HashMap::new();
     let mut out: Vec<(Computed<'_>, Units)> = Vec::with_capacity(nodes.len());
     for node in nodes {
         let inline = node.attribute("style").map(|style| {
             // Many elements share the same style, so long ones are kept parsed.
-            let parsed = || declarations(style).into();
-            if style.len() < CACHED_STYLE { parsed() } else { Rc::clone(cache.entry(style).or_insert_with(parsed)) }
+            let parse = || declarations(style).into();
+            if style.len() < CACHED_STYLE { parse() } else { Rc::clone(long_styles.entry(style).or_insert_with(parse)) }
         });
         let inline = inline.as_deref().unwrap_or_default();
         let declarations = if inline.is_empty() && rules.is_empty() {
@@ -79,7 +79,7 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
             applying(&rules, inline, *node, &counter, &mut caches)
         };
         if counter.exceeded() {
-            break;
+            break; // Then `counter.spend` fails below.
         }
         let parent = node.parent_element().map(|p| p.id());
         while ancestors.last().is_some_and(|(id, _)| Some(*id) != parent) {
@@ -110,7 +110,7 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     let matrices = matrices(nodes, &out);
     let all = out.into_iter().zip(matrices).map(|((computed, units), matrix)| Styled { computed, units, matrix });
     let declared = rules.blocks.iter().flat_map(|b| &b.declarations).map(|d| d.name.to_string()).collect();
-    let notes = rules.moving.into_iter().map(|name| (MOVING, name)).collect();
+    let notes = rules.moving.into_iter().map(|name| (KEYFRAMES_NOTE, name)).collect();
     Ok(Tree { styles: all.collect(), sheets, unsupported: rules.unsupported, declared, notes })
 }
 
@@ -189,8 +189,8 @@ fn view_box(node: Node<'_, '_>) -> Option<(f64, f64)> {
     Some((b.w, b.h))
 }
 
-/// Computes the transforms of elements whose style sheets contribute to them, and of the root. All others are the identity, so that usvg
-/// reads them itself; `None` if one cannot be computed.
+/// Computes the transforms of elements whose style sheets contribute to them, and of the root. All others are the identity: usvg reads
+/// their `transform` attribute itself. `None` marks a transform that cannot be computed.
 fn matrices<'a>(nodes: &[Node<'a, '_>], styles: &[(Computed<'a>, Units)]) -> Vec<Option<Affine>> {
     let mut out = vec![Some(Affine::IDENTITY); nodes.len()];
     let is_root_transformed = nodes.first().is_some_and(|root| root.has_attribute("transform"));

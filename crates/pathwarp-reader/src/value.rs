@@ -177,8 +177,8 @@ impl Variables<'_> {
     }
 }
 
-/// Replaces expressions and relative units by px. `percent` is the value of 100 %. Returns `None` for values that are invalid or
-/// cannot be computed.
+/// Replaces expressions and relative units by px, but not inside other functions, such as `rgb()`. `percent` is the value of 100 %. Returns
+/// `None` for values that are invalid or cannot be computed.
 pub(super) fn computed(value: &str, units: &Units, percent: Option<f64>) -> Option<String> {
     let mut out = String::new();
     let mut input = Parser::new(value);
@@ -242,8 +242,8 @@ pub(super) fn length(value: &str, units: &Units, percent: f64) -> Option<f64> {
     (input.is_exhausted() && quantity.value.is_finite()).then_some(quantity.value)
 }
 
-/// Rewrites a length for usvg. `percent` is the value of 100 %, if usvg doesn't know it. Returns `None` for anything that is not a
-/// length, for negative ones if `non_negative`, and for numbers other than zero without a unit if `strict`.
+/// Rewrites a length for usvg. `percent` is the length of 100 % if percentages are to be replaced, too. Returns `None` for anything that is
+/// not a length, for negative ones if `non_negative`, and for numbers other than zero without a unit if `strict`.
 pub(super) fn known_length<'v>(
     text: &'v str,
     units: &Units,

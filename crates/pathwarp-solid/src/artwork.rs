@@ -77,7 +77,7 @@ pub enum Error {
     },
 }
 
-/// Returns the filled shapes as a mesh in OBJ format. The midpoint of every edge is within `tolerance` (user units) of the surface.
+/// Returns the filled shapes as a mesh in OBJ format, every edge within `tolerance` (user units) of the image of its midpoint in the plane.
 ///
 /// `budget` counts the sides of the triangles as segments.
 ///
@@ -145,7 +145,7 @@ fn image(shape: &str, space: &SurfaceFn<'_>, p: Point) -> Result<Point3, Error> 
     space(p).ok_or_else(|| Error::NoPlace { shape: shape.to_owned(), at: p })
 }
 
-/// Maximum number of halvings of a segment.
+/// Maximum number of halvings of a segment. Its parts then count as within the tolerance.
 const MAX_HALVINGS: u32 = 14;
 
 /// A polygon or polyline in the plane of the drawing.
@@ -261,7 +261,7 @@ fn fill(shape: &NamedShape<'_>, polygons: &[Polygon]) -> Result<FlatMesh, Error>
 
 /// Number of sides per triangle of a mesh, since two triangles share a side.
 const SIDES: f64 = 1.5;
-/// Maximum number of rounds of halving, which gives at most 2^20 parts per edge.
+/// Maximum number of rounds of halving, which gives at most 2^20 parts per edge. They then count as within the tolerance.
 const MAX_ROUNDS: usize = 20;
 
 /// Triangles in space.
@@ -278,11 +278,11 @@ fn to_surface(
     tolerance: f64,
     budget: &Budget,
 ) -> Result<TriangleMesh, Error> {
-    let count = |triangles: usize| spend(name, SIDES * triangles as f64, budget);
+    let charge = |triangles: usize| spend(name, SIDES * triangles as f64, budget);
     let FlatMesh { points: mut sources, mut triangles } = flat;
     let images: Result<Vec<Point3>, Error> = sources.iter().map(|p| image(name, space, *p)).collect();
     let mut points = images?;
-    count(triangles.len())?;
+    charge(triangles.len())?;
     // Edges whose middles are within the tolerance.
     let mut fine: HashSet<Edge> = HashSet::new();
     for _ in 0..MAX_ROUNDS {
@@ -312,7 +312,7 @@ fn to_surface(
             let corner = |k: usize| if k < 3 { t[k] } else { halves[k - 3].unwrap_or_default() };
             finer.extend(parts_of_halved(halves.map(|h| h.is_some())).iter().map(|part| part.map(corner)));
         }
-        count(finer.len() - triangles.len())?;
+        charge(finer.len() - triangles.len())?;
         triangles = finer;
     }
     Ok(TriangleMesh { points, triangles })

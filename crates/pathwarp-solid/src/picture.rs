@@ -14,14 +14,14 @@ pub struct Camera3 {
     half: f64,
 }
 
-/// Depth below which nothing is drawn, as a fraction of the distance to the middle of the scene.
+/// Depth below which nothing is drawn, as a fraction of the distance to the middle of the scene, or in [`draw`] of the greatest depth.
 const NEAR: f64 = 1e-3;
 
 impl Camera3 {
     /// Makes a camera at `eye` that looks at the middle of a box and shows all of it, y up. `None` unless the box is in front of the eye.
     #[must_use]
     pub fn at(eye: DVec3, scene: Box3) -> Option<Self> {
-        /// Half the height of the view beside the scene's, which leaves a margin.
+        /// Height of the view as a multiple of the scene's, which leaves a margin.
         const MARGIN: f64 = 1.04;
         let to_middle = scene.center() - eye;
         let forward = to_middle.try_normalize()?;
@@ -90,20 +90,17 @@ pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -
     let projected: Vec<DVec3> = mesh.positions.iter().map(|p| camera.project(*p, fine as f64)).collect();
     // The direction to the light, which is above the camera to its left.
     let light = camera.axes.transpose() * DVec3::new(-0.4, 0.6, -0.7).normalize();
-    let nearest = NEAR * projected.iter().map(|p| p.z.abs()).fold(0.0, f64::max);
-    let mut names: Vec<&str> = Vec::new();
+    let near = NEAR * projected.iter().map(|p| p.z.abs()).fold(0.0, f64::max);
+    let mut objects: usize = 0;
+    let mut lines = Vec::new();
     let mut marks = mesh.marks.iter().peekable();
     for (n, (kind, corners)) in mesh.polygons().enumerate() {
         while let Some((_, mark)) = marks.next_if(|(first, _)| *first as usize <= n) {
-            if let Mark::Object(name) | Mark::Group(name) = mark {
-                names.push(name);
-            }
+            objects += usize::from(matches!(mark, Mark::Object(_) | Mark::Group(_)));
         }
-        let base = PALETTE[names.len().saturating_sub(1) % PALETTE.len()];
+        let base = PALETTE[objects.saturating_sub(1) % PALETTE.len()];
         if kind == PolygonKind::Line {
-            for w in corners.windows(2) {
-                canvas.line([w[0], w[1]].map(|c| projected[c.vertex as usize]), nearest, base);
-            }
+            lines.extend(corners.windows(2).map(|w| ([w[0], w[1]].map(|c| projected[c.vertex as usize]), base)));
         }
         if kind != PolygonKind::Face {
             continue;
@@ -115,14 +112,15 @@ pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -
             let facing = normal.dot(camera.eye - a) >= 0.0;
             let shade = 0.35 + 0.65 * (normal.dot(light) * if facing { 1.0 } else { -1.0 }).max(0.0);
             let color = (if facing { base } else { INSIDE }).map(|v| v * shade);
-            if t.iter().all(|v| projected[*v].z > nearest) {
+            if t.iter().all(|v| projected[*v].z > near) {
                 canvas.triangle(t.map(|v| projected[v]), color);
             }
         }
     }
+    lines.into_iter().for_each(|(ends, color)| canvas.line(ends, near, color));
     for guide in guides {
         for w in guide.windows(2) {
-            canvas.line([w[0], w[1]].map(|p| camera.project(p, fine as f64)), nearest, GUIDE);
+            canvas.line([w[0], w[1]].map(|p| camera.project(p, fine as f64)), near, GUIDE);
         }
     }
     canvas.pixels()
@@ -162,9 +160,9 @@ impl Canvas {
         }
     }
 
-    /// Draws a thin line over everything.
-    fn line(&mut self, [a, b]: [DVec3; 2], nearest: f64, color: [f64; 3]) {
-        if a.z <= nearest || b.z <= nearest || !(a.is_finite() && b.is_finite()) {
+    /// Draws a thin line over everything drawn so far, if the depth of both ends is greater than `near`.
+    fn line(&mut self, [a, b]: [DVec3; 2], near: f64, color: [f64; 3]) {
+        if a.z <= near || b.z <= near || !(a.is_finite() && b.is_finite()) {
             return;
         }
         let limit = self.side as f64;
@@ -202,14 +200,15 @@ mod tests {
     use crate::mesh::obj;
 
     #[test]
-    fn the_nearer_face_is_seen_and_the_background_is_white() {
-        let two = "o far\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\no near\nv -.5 -.5 1\nv .5 -.5 1\nv .5 .5 1\nv -.5 .5 1\nf 5 6 7 8\n";
+    fn the_nearer_face_and_lines_are_seen_and_the_background_is_white() {
+        let two = "o far\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nl 1 3\nf 1 2 3 4\no near\nv -.5 -.5 1\nv .5 -.5 1\nv .5 .5 1\nv -.5 .5 1\nf 5 6 7 8\n";
         let mesh = obj::read(two.as_bytes()).unwrap();
         let camera = Camera3::at(DVec3::new(0.0, 0.0, 10.0), mesh.bounds().unwrap()).unwrap();
         let picture = draw(&mesh, &[], &camera, 64);
         let at = |x: usize, y: usize| &picture[4 * (y * 64 + x)..][..3];
         assert!(at(32, 32)[0] > at(32, 32)[2], "orange: {:?}", at(32, 32));
         assert!(at(6, 32)[0] < at(6, 32)[2], "blue: {:?}", at(6, 32));
+        assert_ne!(at(32, 31), at(36, 32), "the line lies over the faces, which follow it");
         assert_eq!(at(0, 0), [255; 3]);
         assert!(Camera3::at(DVec3::new(0.0, 0.0, 0.5), mesh.bounds().unwrap()).is_none());
     }

@@ -555,7 +555,7 @@ impl Document {
 fn warp(drawing: &Drawing, bends: &Bends<'_>) -> Result<WarpedDocument, Error> {
     let mut out = WarpedDocument::default();
     let mut bent = bend(drawing, bends, &mut out)?;
-    bent.filters = drawing.with_stack(|| Ok(write::shadows::outcomes(&WriteInput::new(drawing, &bent, bends))))?;
+    bent.filters = drawing.with_stack(|| Ok(write::bent_filters::outcomes(&WriteInput::new(drawing, &bent, bends))))?;
     for (slot, outcome) in &bent.filters {
         let s = &drawing.scene().slots[*slot];
         let name = s.owner.or(s.element).map(|e| drawing.source.display_name(e)).unwrap_or_default();

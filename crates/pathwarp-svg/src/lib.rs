@@ -47,11 +47,12 @@
 //! - `parallel` (default): bends shapes on all processors.
 //! - `usvg`: adds the module `usvg_tree`, which exposes types of usvg and is exempt from semantic versioning.
 
-/// Declares options, each once: its field, its default and perhaps its setter. `defaults` takes the value that has no default.
+/// Declares options, each once: its field, its default and perhaps its setter. `defaults` takes the type's argument, a field without a
+/// default.
 macro_rules! options {
     (
         $(#[$about:meta])*
-        pub struct $type:ident($($given:ident: $given_type:ty)?) {
+        pub struct $type:ident($($required:ident: $required_type:ty)?) {
             $($(#[$doc:meta])* $visibility:vis $field:ident: $value:ty = $default:expr $(, $setter:ident)?;)*
         }
     ) => {
@@ -62,7 +63,7 @@ macro_rules! options {
 
         impl $type {
             /// The defaults.
-            fn defaults($($given: $given_type)?) -> Self {
+            fn defaults($($required: $required_type)?) -> Self {
                 Self { $($field: $default,)* }
             }
 
@@ -104,7 +105,7 @@ pub use scene::plot::{Plot, PlotLoss, PlotShape};
 pub use source::read::ReadOptions;
 pub use source::select::{Elements, Selection};
 
-/// Painters of what SVG cannot bend, fonts, and documents of set text, for the crates that stand on this one, such as pathwarp-engine. This
+/// Items for pathwarp-engine and other crates that stand on this one: painters of what SVG cannot bend, fonts, documents of set text. This
 /// module may change in any release, as may `objects` and `sheet`.
 #[doc(hidden)]
 pub mod engine {

@@ -7,7 +7,7 @@ use kurbo::{BezPath, Point, Rect};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PlacedGlyph {
-    /// Index of the font.
+    /// Index of the font in the list given to [`layout`](crate::layout()).
     pub font: usize,
     /// Number of the glyph in the font; 0 is the glyph for missing characters.
     pub id: u32,
@@ -23,7 +23,7 @@ pub struct PlacedGlyph {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Cluster {
-    /// The characters.
+    /// The characters, in reading order.
     pub text: String,
     /// Left end on the baseline.
     pub origin: Point,
@@ -39,14 +39,14 @@ pub struct Cluster {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct LetteringLine {
-    /// The characters.
+    /// The characters, in reading order.
     pub text: String,
     /// Left end of the baseline: the start of the first advance.
     pub start: Point,
     /// Right end of the baseline: the end of the last advance.
     pub end: Point,
-    /// Size of the em relative to the style's. It is 1 except with [`Align::Fill`](crate::Align::Fill), where the line also starts and
-    /// ends with its ink.
+    /// Size of the em relative to the style's. It is 1 except with [`Align::Fill`](crate::Align::Fill), for which `start` and `end` are the
+    /// ends of the ink.
     pub scale: f64,
     /// The clusters from left to right.
     pub clusters: Vec<Cluster>,
@@ -67,7 +67,7 @@ impl LetteringLine {
 pub struct OutlinedText {
     /// The text with newlines between lines; control characters are replaced by spaces.
     pub text: String,
-    /// Heights of the first font, in lines of scale 1.
+    /// Heights of the first font in the list, for a line of scale 1.
     pub metrics: FontMetrics,
     /// `true` if the base direction is right to left.
     pub rtl: bool,

@@ -15,7 +15,7 @@ use std::fmt;
 /// Limit on the work of one glyph, in points or bytes. Ornaments and coloured glyphs in sound fonts take far less.
 pub const MAX_WORK: u64 = 200_000;
 
-/// Limit on the nesting of parts and paints, more than readers follow.
+/// Limit on the nesting of parts and paints, more than programs that draw fonts follow.
 const MAX_DEPTH: usize = 64;
 
 /// Measures the glyphs of a font: points of outlines including their parts, bytes of charstrings including their subroutines, and
@@ -58,32 +58,33 @@ impl<'a> GlyphWork<'a> {
     /// Returns the work of a letter, if the shaper does not substitute it; at most [`MAX_WORK`].
     pub fn of_letter(&mut self, letter: char) -> u64 {
         let glyph = self.charmap.map(letter).unwrap_or_default();
-        guarded(|| Ok(self.glyph(glyph))).unwrap_or(MAX_WORK)
+        guarded(|| Ok(self.glyph_work(glyph))).unwrap_or(MAX_WORK)
     }
 
     /// Returns the first glyph that takes [`MAX_WORK`] or more.
     pub fn endless(&mut self) -> Option<u32> {
-        let found = guarded(|| Ok((0..self.glyphs).find(|g| self.glyph(GlyphId::new(*g)) >= MAX_WORK)));
+        let found = guarded(|| Ok((0..self.glyphs).find(|g| self.glyph_work(GlyphId::new(*g)) >= MAX_WORK)));
         // A font that makes its reader panic must not be used.
         found.unwrap_or(Some(0))
     }
 
-    fn glyph(&mut self, glyph: GlyphId) -> u64 {
-        self.outline(glyph, 0).max(self.colours(glyph, 0))
+    /// Returns the work of a glyph, which is drawn either by its outline or by its layers of colour.
+    fn glyph_work(&mut self, glyph: GlyphId) -> u64 {
+        self.outline_work(glyph, 0).max(self.colour_work(glyph, 0))
     }
 
-    fn outline(&mut self, glyph: GlyphId, depth: usize) -> u64 {
+    fn outline_work(&mut self, glyph: GlyphId, depth: usize) -> u64 {
         if let Some(known) = self.outlines.get(&glyph.to_u32()) {
             return *known;
         }
         // A glyph that contains itself is endless.
         self.outlines.insert(glyph.to_u32(), MAX_WORK);
-        let work = self.outline_anew(glyph, depth).min(MAX_WORK);
+        let work = self.measure_outline(glyph, depth).min(MAX_WORK);
         self.outlines.insert(glyph.to_u32(), work);
         work
     }
 
-    fn outline_anew(&mut self, glyph: GlyphId, depth: usize) -> u64 {
+    fn measure_outline(&mut self, glyph: GlyphId, depth: usize) -> u64 {
         if depth > MAX_DEPTH {
             return MAX_WORK;
         }
@@ -94,14 +95,14 @@ impl<'a> GlyphWork<'a> {
         match found {
             Some(Glyph::Simple(s)) => 1 + s.num_points() as u64,
             Some(Glyph::Composite(c)) => {
-                sum(c.components(), |part| 1 + self.outline(GlyphId::from(part.glyph), depth + 1))
+                sum(c.components(), |part| 1 + self.outline_work(GlyphId::from(part.glyph), depth + 1))
             }
             None => 1,
         }
     }
 
     /// Returns the work of a glyph's layers of colour, including the outlines that they fill.
-    fn colours(&mut self, glyph: GlyphId, depth: usize) -> u64 {
+    fn colour_work(&mut self, glyph: GlyphId, depth: usize) -> u64 {
         let Some(colr) = self.colr.clone() else { return 0 };
         if let Some(known) = self.coloured.get(&glyph.to_u32()) {
             return *known;
@@ -109,18 +110,18 @@ impl<'a> GlyphWork<'a> {
         self.coloured.insert(glyph.to_u32(), MAX_WORK);
         let mut work = 0;
         if let Ok(Some((paint, _))) = colr.v1_base_glyph(glyph) {
-            work = self.paint(&colr, &paint, depth);
+            work = self.paint_work(&colr, &paint, depth);
         }
         if let Ok(Some(layers)) = colr.v0_base_glyph(glyph) {
             let layers = layers.map_while(|i| colr.v0_layer(i).ok());
-            work += sum(layers, |(filled, _)| LAYER + self.outline(filled.into(), 0));
+            work += sum(layers, |(filled, _)| LAYER + self.outline_work(filled.into(), 0));
         }
         let work = work.min(MAX_WORK);
         self.coloured.insert(glyph.to_u32(), work);
         work
     }
 
-    fn paint(&mut self, colr: &Colr<'a>, paint: &Paint<'a>, depth: usize) -> u64 {
+    fn paint_work(&mut self, colr: &Colr<'a>, paint: &Paint<'a>, depth: usize) -> u64 {
         let address = paint.offset_data().as_bytes().as_ptr() as usize;
         if let Some(known) = self.paints.get(&address) {
             return *known;
@@ -129,7 +130,7 @@ impl<'a> GlyphWork<'a> {
             return MAX_WORK;
         }
         self.paints.insert(address, MAX_WORK);
-        let mut below = |p: Result<Paint<'a>, _>| p.map_or(0, |p: Paint<'a>| self.paint(colr, &p, depth + 1));
+        let mut below = |p: Result<Paint<'a>, _>| p.map_or(0, |p: Paint<'a>| self.paint_work(colr, &p, depth + 1));
         let inner = match paint {
             Paint::Composite(p) => below(p.source_paint()) + below(p.backdrop_paint()),
             Paint::ColrLayers(p) => {
@@ -137,8 +138,8 @@ impl<'a> GlyphWork<'a> {
                 let layers = (first..first.saturating_add(p.num_layers().into())).map_while(|i| colr.v1_layer(i).ok());
                 sum(layers, |(layer, _)| below(Ok(layer)))
             }
-            Paint::Glyph(p) => below(p.paint()) + self.outline(p.glyph_id().into(), 0),
-            Paint::ColrGlyph(p) => self.colours(p.glyph_id().into(), depth + 1),
+            Paint::Glyph(p) => below(p.paint()) + self.outline_work(p.glyph_id().into(), 0),
+            Paint::ColrGlyph(p) => self.colour_work(p.glyph_id().into(), depth + 1),
             other => child(other).map_or(0, |p| below(Ok(p))),
         };
         let work = (LAYER + inner).min(MAX_WORK);

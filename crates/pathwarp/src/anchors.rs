@@ -278,7 +278,7 @@ pub(crate) fn to_standard(name: &str, a: &Anchors) -> Result<Arc<dyn Map>, Error
 }
 
 /// Reduces an affine map to its matrix, or to the identity if only rounding moves the corners of `frame`; leaves other maps alone.
-pub(crate) fn settled(map: Arc<dyn Map>, frame: Rect) -> Arc<dyn Map> {
+pub(crate) fn simplified(map: Arc<dyn Map>, frame: Rect) -> Arc<dyn Map> {
     /// The rounding error of a few dozen operations on numbers of the corners' size.
     const ROUNDING: f64 = 1e-14;
     let Class::Affine(m) = map.class() else { return map };

@@ -19,16 +19,16 @@ pub fn trimmed(v: f64, decimals: usize) -> String {
     out
 }
 
-/// Formats numbers that belong together, such as the coordinates of a point or a box: each with `digits` significant digits, but with no
-/// more decimals than the largest needs for `digits + more` digits. Numbers that are negligible beside the largest become 0.
+/// Formats numbers that belong together, such as the coordinates of a point or a box: each with `digits` significant digits, but no
+/// decimals beyond those that give the largest `digits + extra_digits` digits. Numbers that are negligible beside the largest become 0.
 ///
 /// ```
 /// use pathwarp::decimal::together;
 ///
 /// assert!(together(&[0.1 + 0.2, -7.7e-16, 40.0], 9, 3).eq(["0.3", "0", "40"]));
 /// ```
-pub fn together(values: &[f64], digits: i32, more: i32) -> impl Iterator<Item = String> {
-    let max_decimals = decimals(values.iter().copied(), digits + more);
+pub fn together(values: &[f64], digits: i32, extra_digits: i32) -> impl Iterator<Item = String> {
+    let max_decimals = decimals(values.iter().copied(), digits + extra_digits);
     values.iter().map(move |v| trimmed(*v, decimals([*v], digits).min(max_decimals)))
 }
 

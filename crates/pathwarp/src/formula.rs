@@ -4,7 +4,7 @@ use crate::decimal::trimmed;
 use crate::map::{Dual, Real};
 use std::array::from_fn;
 use std::borrow::Cow;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{LN_2, PI, TAU};
 use thiserror::Error;
 
 // From text to a program: a Pratt parser (V. Pratt, *Top down operator precedence*, POPL 1973) that emits as it reads.
@@ -103,16 +103,16 @@ pub(crate) fn parse(text: &str, names: &Names<'_>, program: &mut Program) -> Res
     Err(SyntaxError::new(parser.at, problem))
 }
 
-/// A sum of plane waves with lengths from 1 to 2 in all directions, whose directions, lengths and phases are evenly spread without a
-/// pattern: the spectral representation of a random field (M. Shinozuka, G. Deodatis, *Simulation of stochastic processes by spectral
+/// A sum of plane waves with lengths from 1 to 2, mostly between −1 and 1. Their directions, lengths and phases are evenly spread without
+/// a pattern: the spectral representation of a random field (M. Shinozuka, G. Deodatis, *Simulation of stochastic processes by spectral
 /// representation*, Applied Mechanics Reviews 44, 1991).
 fn noise() -> String {
     // Powers of 1/g, where g is the golden ratio or, for two numbers at once, the root of g³ = g + 1.
-    const STEPS: [f64; 3] = [0.618_033_988_749_895, 0.754_877_666_246_693, 0.569_840_290_998_053];
+    const IRRATIONALS: [f64; 3] = [0.618_033_988_749_895, 0.754_877_666_246_693, 0.569_840_290_998_053];
     let wave = |i: u32| {
-        let [direction, length, phase] = STEPS.map(|s| (f64::from(i) * s).fract());
-        let ((sin, cos), k) = ((PI * direction).sin_cos(), PI * (1.0 + length));
-        format!("+ sin({} * a + {} * b + {})", k * cos, k * sin, TAU * phase)
+        let [direction, frequency, phase] = IRRATIONALS.map(|g| (f64::from(i) * g).fract());
+        let ((sin, cos), wave_number) = ((PI * direction).sin_cos(), PI * (1.0 + frequency));
+        format!("+ sin({} * a + {} * b + {})", wave_number * cos, wave_number * sin, TAU * phase)
     };
     format!("({})/8", (1..=16).map(wave).collect::<String>())
 }
@@ -442,7 +442,7 @@ impl Program {
         Some(format!("{operation} {what}"))
     }
 
-    /// Returns the kinks of two results and of everything they depend on.
+    /// Returns the kinks of two results and of everything they depend on. Jumps of `atan2` are not among them.
     pub(crate) fn kinks(&self, results: [u32; 2]) -> Vec<Kink> {
         let needed = self.needed(results);
         let ops = self.ops.iter().enumerate().filter(|(i, _)| needed[*i]);
@@ -543,7 +543,7 @@ impl Kink {
 
 fn apply_unary<S: Real>(op: Unary, a: S) -> S {
     let cosine_of_asin = |a: S| (-(a * a) + 1.0).sqrt();
-    // tanh and asinh are odd; their formulas for |a| neither overflow nor cancel.
+    // tanh and asinh are odd. For |a|, the exponential does not overflow, and the terms of the logarithm do not cancel.
     let sign = if a.value() < 0.0 { -1.0 } else { 1.0 };
     match op {
         Unary::Neg => -a,
@@ -561,6 +561,8 @@ fn apply_unary<S: Real>(op: Unary, a: S) -> S {
             let e = (a * (-2.0 * sign)).exp();
             (S::from(2.0) / (e + 1.0) - 1.0) * sign
         }
+        // Its square overflows.
+        Unary::Asinh if a.value().abs() > 1e154 => ((a * sign).ln() + LN_2) * sign,
         Unary::Asinh => (a * sign + (a.powi(2) + 1.0).sqrt()).ln() * sign,
         Unary::Sign => a.sign(),
         Unary::Floor => a.floor(),
@@ -577,6 +579,7 @@ fn apply_binary<S: Real>(op: Binary, a: S, b: S) -> S {
         Binary::Atan2 => a.atan2(b),
         Binary::Hypot => a.hypot(b),
         Binary::Min => a.smaller(b),
+        // b at a tie, as in `branch`.
         Binary::Max => -(-b).smaller(-a),
     }
 }
@@ -717,6 +720,7 @@ mod tests {
         c.define("f = -d ? 1 : e").unwrap();
         assert_eq!(c.value("f"), c.value("e"));
         assert_eq!((c.value("e"), c.value("e + 1")), (Ok(24.0), Ok(25.0)));
+        assert_eq!(c.value("asinh(-10^200)").map(|v| (v + 461.210165793).abs() < 1e-6), Ok(true));
         for (text, part) in [
             ("x", "NAME = FORMULA"),
             ("sin = 2", "not a valid name"),

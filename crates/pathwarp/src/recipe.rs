@@ -85,7 +85,7 @@ pub struct BuiltRecipe {
     pub map: Chain,
     /// The steps one by one.
     pub steps: Vec<Built>,
-    /// Copies of the artwork and letters placed one by one, by the first step.
+    /// The first step's placement of copies of the artwork, or of its letters one by one.
     pub placement: Placement,
     /// The steps after the first, composed: the map for letters that were placed; for letters that it moved
     /// [before](Placement::before) the map, all steps.
@@ -295,7 +295,7 @@ impl Recipe {
                 if let Some(warning) = all().find_map(|(part, portion)| part.torn_seam(portion, &built, step)) {
                     built.warn(warning);
                 }
-                built = inverted(built, &frame, &step.deformation, budget)?;
+                built = undone(built, &frame, &step.deformation, budget)?;
             }
             members.iter().for_each(|&m| out.parts[m].push(i, built.clone(), &frame));
             out.whole.push(i, built, &frame);
@@ -306,8 +306,8 @@ impl Recipe {
     /// Returns the recipe that undoes this one: the steps' inverses, the last first.
     #[must_use]
     pub fn inverted(&self) -> Self {
-        let inverted = |s: &Step| Step { inverse: !s.inverse, ..s.clone() };
-        Self { steps: self.steps.iter().rev().map(inverted).collect() }
+        let undoing = |s: &Step| Step { inverse: !s.inverse, ..s.clone() };
+        Self { steps: self.steps.iter().rev().map(undoing).collect() }
     }
 }
 
@@ -343,8 +343,8 @@ fn check_placement(placement: &Placement, i: usize, is_first: bool, step: &Step)
 }
 
 impl BuiltRecipe {
-    /// Returns the outlines of the part of the artwork that other parts hide in a step's image, by the even-odd rule, so that this image is
-    /// within `tolerance`. `None` if no step hides anything, and after steps that do more than an affine map.
+    /// Returns the outlines, in the source and by the even-odd rule, of what lies behind other parts of the artwork in a step's image,
+    /// within `tolerance` there. `None` if no step hides anything, and after steps that do more than an affine map.
     #[must_use]
     pub fn hidden(&self, tolerance: f64) -> Option<Outline> {
         let step = self.steps.iter().position(|s| s.hidden.is_some())?;
@@ -413,6 +413,7 @@ impl BuiltRecipe {
         let (values, state) = (map.clone(), self.clone());
         let mut built = Built::new(Arc::new(map));
         if self.steps.iter().any(|s| s.undefined.is_some()) {
+            // The steps know reasons for points of their own planes only, so the reason stays empty.
             built.undefined = Some(Arc::new(move |p| (!values.point(p).is_finite()).then(String::new)));
         }
         built.failure = Some(Arc::new(move || state.failure()));
@@ -458,7 +459,7 @@ fn inverse(built: &Built, frame: &Frame, budget: &Arc<Budget>) -> Arc<dyn Map> {
 }
 
 /// Inverts a deformation, with a warning if it folds.
-fn inverted(mut built: Built, frame: &Frame, deformation: &str, budget: &Arc<Budget>) -> Result<Built, GeometryError> {
+fn undone(mut built: Built, frame: &Frame, deformation: &str, budget: &Arc<Budget>) -> Result<Built, GeometryError> {
     let map = inverse(&built, frame, budget);
     let work = INVERTING_WORK * built.map.work() + SAMPLES as f64 * map.work();
     budget.spend(work).map_err(GeometryError::Limit)?;

@@ -67,5 +67,5 @@ pub(crate) fn measure(program: &Path, line: &str, file: &Path, scratch: &Path) -
     let (input, output) = (file.to_string_lossy(), scratch.join("out"));
     let word = |w: String| w.replace("IN", &input).replace("OUT", &output.to_string_lossy());
     let args = shell::words(line).into_iter().map(|w| if w == "IN" || w.starts_with("OUT") { word(w) } else { w });
-    Job::new(program, args).usage()
+    Job::new(program, args).run_unchecked()
 }

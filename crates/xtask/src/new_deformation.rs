@@ -22,15 +22,17 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     create(&root, arguments.get_one::<String>("NAME").map_or("", String::as_str))
 }
 
-/// Writes the file and the three lines of `deform/mod.rs`, and returns a summary.
+/// Writes the file, adds its three lines to `deform/mod.rs`, and returns a summary.
 fn create(root: &Path, name: &str) -> Result<String, ChoreError> {
-    let kebab = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
-    if !name.split('-').all(kebab) || name.starts_with(|c: char| c.is_ascii_digit()) {
+    let is_word = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
+    if !name.split('-').all(is_word) || name.starts_with(|c: char| c.is_ascii_digit()) {
         return Err(format!("`{name}` is not in kebab-case, such as swirl or square-wave"));
     }
     let module = name.replace('-', "_");
-    if ["mod", "self", "super", "crate", "type", "match", "move", "loop", "box", "fn", "let"].contains(&module.as_str())
-    {
+    const KEYWORDS: &str = "abstract as async await become box break const continue crate do dyn else enum extern false final fn for gen \
+        if impl in let loop macro match mod move mut override priv pub ref return self static struct super trait true try type typeof \
+        unsafe unsized use virtual where while yield";
+    if KEYWORDS.split_whitespace().any(|keyword| keyword == module) {
         return Err(format!("`{name}` is a keyword of Rust; choose another name"));
     }
     let folder = root.join("crates/pathwarp/src/deform");
@@ -41,7 +43,7 @@ fn create(root: &Path, name: &str) -> Result<String, ChoreError> {
     }
     let read = |p: &Path| fs::read_to_string(p).map_err(at(p));
     let list = register(&read(&list_file)?, &module, &type_name(name))?;
-    let text = TEMPLATE.replace("NAME", name).replace("MODULE", &module).replace("TYPE", &type_name(name));
+    let text = TEMPLATE.replace("NAME", name).replace("TYPE", &type_name(name));
     fs::write(&file, text).map_err(at(&file))?;
     fs::write(&list_file, list).map_err(at(&list_file))?;
     Ok(format!(
@@ -138,9 +140,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_that_are_none_are_refused() {
+    fn invalid_and_taken_names_are_refused() {
         let root = workspace();
         assert!(create(&root, "wave").unwrap_err().contains("already"));
         assert!(create(&root, "Square").is_err() && create(&root, "").is_err() && create(&root, "a--b").is_err());
+        assert!(["use", "yield"].iter().all(|name| create(&root, name).unwrap_err().contains("keyword")));
     }
 }

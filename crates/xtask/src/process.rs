@@ -44,8 +44,8 @@ impl Job {
         Self { args, ..self.clone() }
     }
 
-    /// Runs the program once.
-    pub(crate) fn usage(&self) -> Result<Usage, ChoreError> {
+    /// Runs the program once, whatever its exit code.
+    pub(crate) fn run_unchecked(&self) -> Result<Usage, ChoreError> {
         let mut command = Command::new(&self.program);
         command.args(&self.args).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
         let started = Instant::now();
@@ -58,9 +58,9 @@ impl Job {
         })
     }
 
-    /// Runs the program once. `None` if it refuses its input, with an exit code above 1; 1 is partial success of pathwarp.
+    /// Runs the program once. `None` if it was killed or refused its input (exit code above 1). Code 1 is pathwarp's partial success.
     pub(crate) fn run(&self) -> Result<Option<Usage>, ChoreError> {
-        Ok(Some(self.usage()?).filter(|used| used.code.is_some_and(|c| c <= 1)))
+        Ok(Some(self.run_unchecked()?).filter(|used| used.code.is_some_and(|c| c <= 1)))
     }
 
     /// Runs the program several times and returns the run with the median of `figure`.
@@ -74,8 +74,8 @@ impl Job {
     }
 }
 
-/// Runs two jobs alternately, so that a drift of the machine's speed affects both alike, and returns the pair of runs with the median ratio of
-/// CPU times. `None` if either job refuses its input.
+/// Runs two jobs alternately, so that drifts of the machine's speed affect both alike, and returns the pair of runs with the median
+/// ratio of CPU times. `None` if a run gives `None`.
 pub(crate) fn paired(a: &Job, b: &Job, rounds: usize) -> Result<Option<(Usage, Usage)>, ChoreError> {
     let mut pairs = Vec::with_capacity(rounds);
     for _ in 0..rounds {

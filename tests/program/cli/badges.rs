@@ -126,6 +126,10 @@ fn what_does_not_fit_is_told() {
     assert!(said.contains("--size smaller"), "{said}");
     let (_, said) = expect_code(2, &["badge", "ONE", "TWO\nLINES"]);
     assert!(said.contains("one line"), "{said}");
+    // The band covers the centre.
+    let center = root().join("samples/icons/cup.svg").display().to_string();
+    let (_, said) = expect_code(2, &["badge", "ONE", "--size", "20", "--band", "60%", "--center", &center]);
+    assert!(said.contains("no room"), "{said}");
     let (_, said) = expect_code(3, &["badge", "ONE", "--separator", "hart"]);
     assert!(said.contains("did you mean heart?"), "{said}");
     // A line alone has one separator, at the bottom.

@@ -92,6 +92,16 @@ fn what_left_its_page_altogether_takes_it_along_with_its_margin() {
     assert_eq!(page, "-100 -100 440 440", "{said}");
 }
 
+/// The marks lie off the page of the original, whose margin does not count them.
+#[test]
+fn marks_for_the_viewer_leave_the_margin() {
+    let line = "anamorph --eye-height 350 --distance 400 --onto plane:floor --sight-mark --fit page";
+    let sides = |root| moved(root, BOX, line).0.split(' ').map(|n| n.parse().unwrap()).collect::<Vec<f64>>();
+    let (tight, wide) = (sides("viewBox='20 30 200 180'"), sides("viewBox='10 20 220 200'"));
+    let growth: Vec<f64> = tight.iter().zip(&wide).map(|(tight, wide)| (wide - tight).round()).collect();
+    assert_eq!(growth, [-10.0, -10.0, 20.0, 20.0], "{tight:?} {wide:?}");
+}
+
 #[test]
 fn icons_and_paper_keep_their_pages() {
     let body = |w: f64, h: f64| format!("<path d='M{0} {1}H{2}V{3}H{0}Z'/>", 0.1 * w, 0.1 * h, 0.9 * w, 0.9 * h);

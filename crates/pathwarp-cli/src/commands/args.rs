@@ -52,8 +52,8 @@ pub(super) fn target(
     let target = m.get_one::<PathBuf>(OUT).map(PathBuf::as_path).filter(|o| !is_stdout(o));
     if let Some(to) = target {
         let mut files = Files::default();
-        read.into_iter().for_each(|f| files.read(f.as_ref()));
-        files.write(to, "")?;
+        read.into_iter().for_each(|f| files.add_source(f.as_ref()));
+        files.add_output(to, "")?;
     }
     Ok(target)
 }

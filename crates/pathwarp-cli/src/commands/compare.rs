@@ -197,7 +197,7 @@ fn match_by_boxes(a: &[NamedPath], b: &[NamedPath], counterparts: &mut [Option<u
 
 fn table(c: &Comparison) -> String {
     let mut out = String::new();
-    let ids: Vec<_> = c.paths.iter().map(|p| readable::name(&p.id)).collect();
+    let ids: Vec<_> = c.paths.iter().map(|p| readable::safe_name(&p.id)).collect();
     let width = terminal::column(ids.iter().map(AsRef::as_ref));
     let _ = writeln!(out, "{:width$}  segments      distance", "id");
     for (p, id) in c.paths.iter().zip(ids) {
@@ -207,7 +207,7 @@ fn table(c: &Comparison) -> String {
     for (name, ids) in [("first", &c.only_in_a), ("second", &c.only_in_b)] {
         if !ids.is_empty() {
             let ids = ids.join(", ");
-            let _ = writeln!(out, "only in the {name}: {}", readable::name(&ids));
+            let _ = writeln!(out, "only in the {name}: {}", readable::safe_name(&ids));
         }
     }
     let _ = writeln!(out, "largest distance: {:.6}", c.max_distance);

@@ -195,7 +195,7 @@ fn stroke(closed: bool, with_handles: impl Iterator<Item = [Point; 3]>) -> Liste
 
 fn table(paths: &[ListedPath]) -> String {
     let mut out = String::new();
-    let names: Vec<_> = paths.iter().map(|p| readable::name(&p.name)).collect();
+    let names: Vec<_> = paths.iter().map(|p| readable::safe_name(&p.name)).collect();
     let width = terminal::column(names.iter().map(AsRef::as_ref));
     let kind = if paths.iter().any(|p| p.visible.is_some()) { "visible" } else { "element" };
     let _ = writeln!(out, "{:width$}  {kind:8}  {:7}  {:>7}  x y width height", "name", "closed", "anchors");
@@ -217,7 +217,7 @@ fn table(paths: &[ListedPath]) -> String {
         let kind = p.visible.map(|v| if v { "visible" } else { "hidden" }).or(p.element.as_deref()).unwrap_or_default();
         let _ = write!(out, "{name:width$}  {kind:8}  {closed:7}  {anchors:>7}  {bounds}");
         if let Some(l) = p.label.as_ref().or(p.title.as_ref()) {
-            let _ = write!(out, "  ({})", readable::name(l));
+            let _ = write!(out, "  ({})", readable::safe_name(l));
         }
         out.push('\n');
     }

@@ -41,8 +41,8 @@ pub(super) fn copy(
         Some(out) if split => {
             let names = names(out, format, &paths);
             let mut files = Files::default();
-            files.read(file);
-            names.iter().try_for_each(|to| files.write(to, ""))?;
+            files.add_source(file);
+            names.iter().try_for_each(|to| files.add_output(to, ""))?;
             let single = |(to, p): (&PathBuf, &GimpPath)| PendingFile::new(to, &bytes(std::slice::from_ref(p))?);
             let files: Result<Vec<PendingFile>, Failure> = names.iter().zip(&paths).map(single).collect();
             PendingFile::commit_all(files?)?;

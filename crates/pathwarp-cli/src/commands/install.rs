@@ -65,12 +65,12 @@ pub(super) fn install(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
     let is_dry = m.get_flag("dry-run");
     let mut lines = String::new();
     for folder in folders {
-        let home = folder.join(if is_gimp { GIMP_HOME } else { INKSCAPE_HOME });
+        let plug_in_folder = folder.join(if is_gimp { GIMP_PLUG_IN } else { INKSCAPE_EXTENSION });
         lines += &if m.get_flag("uninstall") {
-            let names = if is_gimp { gimp_names().to_vec() } else { inkscape_installed(&home) };
-            uninstall_files(&home, &names, is_dry)?
+            let names = if is_gimp { gimp_names().to_vec() } else { inkscape_installed(&plug_in_folder) };
+            uninstall_files(&plug_in_folder, &names, is_dry)?
         } else {
-            install_files(&home, &parts()?, is_dry)?
+            install_files(&plug_in_folder, &parts()?, is_dry)?
         };
     }
     output::to_stdout(lines.as_bytes())?;
@@ -96,12 +96,12 @@ fn variable(name: &str) -> Option<PathBuf> {
     env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from)
 }
 
-/// Writes the files below `home`. Returns a line for each.
-pub(super) fn install_files(home: &Path, parts: &[Part], is_dry: bool) -> Result<String, Failure> {
+/// Writes the files below `plug_in_folder`. Returns a line for each.
+pub(super) fn install_files(plug_in_folder: &Path, parts: &[Part], is_dry: bool) -> Result<String, Failure> {
     let mut lines = String::new();
     let mut pending = Vec::new();
     for part in parts {
-        let file = home.join(&part.name);
+        let file = plug_in_folder.join(&part.name);
         let _ = writeln!(lines, "{} {}", if is_dry { "would write" } else { "wrote" }, file.display());
         if !is_dry {
             let folder = file.parent().unwrap_or(Path::new(""));
@@ -111,7 +111,7 @@ pub(super) fn install_files(home: &Path, parts: &[Part], is_dry: bool) -> Result
     }
     PendingFile::commit_all(pending)?;
     #[cfg(unix)]
-    for file in parts.iter().filter(|p| p.is_executable && !is_dry).map(|p| home.join(&p.name)) {
+    for file in parts.iter().filter(|p| p.is_executable && !is_dry).map(|p| plug_in_folder.join(&p.name)) {
         use std::os::unix::fs::PermissionsExt;
         fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).map_err(|e| Failure::output(&file, e))?;
     }
@@ -119,11 +119,11 @@ pub(super) fn install_files(home: &Path, parts: &[Part], is_dry: bool) -> Result
 }
 
 /// Removes the files that exist, and folders that become empty. Returns a line for each file.
-fn uninstall_files(home: &Path, names: &[PathBuf], is_dry: bool) -> Result<String, Failure> {
+fn uninstall_files(plug_in_folder: &Path, names: &[PathBuf], is_dry: bool) -> Result<String, Failure> {
     let mut lines = String::new();
-    let existing: Vec<PathBuf> = names.iter().map(|n| home.join(n)).filter(|f| f.exists()).collect();
+    let existing: Vec<PathBuf> = names.iter().map(|n| plug_in_folder.join(n)).filter(|f| f.exists()).collect();
     if existing.is_empty() {
-        terminal::note(&format!("{} is not installed", home.display()));
+        terminal::note(&format!("{} is not installed", plug_in_folder.display()));
     }
     for file in &existing {
         let _ = writeln!(lines, "{} {}", if is_dry { "would remove" } else { "removed" }, file.display());
@@ -133,16 +133,16 @@ fn uninstall_files(home: &Path, names: &[PathBuf], is_dry: bool) -> Result<Strin
     }
     if !is_dry {
         // Folders with other files stay.
-        for folder in existing.iter().filter_map(|f| f.parent()).filter(|f| *f != home) {
+        for folder in existing.iter().filter_map(|f| f.parent()).filter(|f| *f != plug_in_folder) {
             let _ = fs::remove_dir(folder);
         }
-        let _ = fs::remove_dir(home);
+        let _ = fs::remove_dir(plug_in_folder);
     }
     Ok(lines)
 }
 
-/// Returns the folders where a program called `name` may keep its settings. On Linux, it may also be a package of Flatpak, `flatpak`, or of
-/// Snap. The folders of macOS are below the user's.
+/// Returns the folders where a program called `name` may keep its settings. On Linux it may also be installed by Flatpak, as `flatpak`,
+/// or by Snap. `macos` lists its folders on macOS, relative to the user's home.
 fn settings_folders(name: &str, flatpak: &str, macos: &[&str]) -> Vec<PathBuf> {
     let home = variable("HOME").unwrap_or_default();
     if cfg!(target_os = "windows") {
@@ -160,12 +160,12 @@ fn settings_folders(name: &str, flatpak: &str, macos: &[&str]) -> Vec<PathBuf> {
 /// The plug-in's source. GIMP 3 looks for `plug-ins/NAME/NAME.py`.
 const PLUG_IN: &str = include_str!("../../plug-ins/gimp/pathwarp-gimp.py");
 /// The plug-in's folder within GIMP's folder of plug-ins.
-const GIMP_HOME: &str = "pathwarp-gimp";
+const GIMP_PLUG_IN: &str = "pathwarp-gimp";
 
 /// Returns the paths of the script and the program, relative to the plug-in's folder.
 fn gimp_names() -> [PathBuf; 2] {
     let program = Path::new("bin").join("pathwarp").with_extension(env::consts::EXE_EXTENSION);
-    [PathBuf::from(GIMP_HOME).with_extension("py"), program]
+    [PathBuf::from(GIMP_PLUG_IN).with_extension("py"), program]
 }
 
 /// Returns the files to install for GIMP.
@@ -191,7 +191,7 @@ fn gimp_folders() -> Vec<PathBuf> {
 }
 
 /// The extension's folder within Inkscape's folder of extensions.
-const INKSCAPE_HOME: &str = "pathwarp";
+const INKSCAPE_EXTENSION: &str = "pathwarp";
 
 /// Returns the files to install for Inkscape. The extension calls `program`, a name or path, or by default a copy of this program.
 fn inkscape_parts(registry: &Registry, program: Option<&Path>) -> Result<Vec<Part>, Failure> {
@@ -216,12 +216,12 @@ fn inkscape_parts(registry: &Registry, program: Option<&Path>) -> Result<Vec<Par
 }
 
 /// Returns the files that [`inkscape_parts`] may have written, in this or another version of the program.
-fn inkscape_installed(home: &Path) -> Vec<PathBuf> {
+fn inkscape_installed(plug_in_folder: &Path) -> Vec<PathBuf> {
     let is_ours = |name: &Path| {
         let name = name.to_string_lossy();
         (name.starts_with("pathwarp-") && name.ends_with(".inx")) || name == "pathwarp" || name == "pathwarp.exe"
     };
-    let entries = fs::read_dir(home).into_iter().flatten().flatten();
+    let entries = fs::read_dir(plug_in_folder).into_iter().flatten().flatten();
     let mut names: Vec<PathBuf> = entries.map(|e| PathBuf::from(e.file_name())).filter(|n| is_ours(n)).collect();
     names.sort();
     names

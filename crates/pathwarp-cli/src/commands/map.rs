@@ -26,10 +26,10 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The work for a point, relative to an evaluation of the map with its share of a fit.
-const POINT: f64 = 0.25;
+/// The work for a point, relative to an evaluation of the map with the work of a fit around it, the unit of budgets.
+const WORK_FOR_POINT: f64 = 0.25;
 /// The work for all preimages of a point, in the same unit.
-const ALL: f64 = 5000.0;
+const WORK_FOR_PREIMAGES: f64 = 5000.0;
 
 pub(super) fn map_command(registry: &Registry) -> Command {
     let mut c = Command::new("map")
@@ -55,7 +55,7 @@ pub(super) fn map_command(registry: &Registry) -> Command {
     let all = switch("all", "Print all points that the maps of steps with --inverse lead back to").requires(INVERSE);
     let frame_and_all = [frame, all.conflicts_with("jacobian")];
     for info in registry.infos() {
-        let command = Command::new(info.name).aliases(steps::aliases(info.name)).about(info.title);
+        let command = Command::new(info.name).aliases(steps::alias(info.name)).about(info.title);
         let command = command.args(steps::args(info)).args(points_args()).args(frame_and_all.clone());
         c = c.subcommand(command.args(exact::args()));
     }
@@ -112,6 +112,7 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
         (None, Some(curves)) => curves.bounds(),
         (None, None) => Outline::from_points(&points, false).bounding_box().unwrap_or(Rect::ZERO),
     };
+    // Stands for artwork, which later steps and inverses examine.
     let hatching = hatching(frame);
     let budget = Arc::new(Budget::new(reading.limits.for_input(bytes)));
     let options = CommonOptions { reading, ..CommonOptions::default() };
@@ -120,7 +121,7 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let artwork = &mut PlainArtwork { outlines, frame: Frame::new(frame), budget: Arc::clone(&budget) };
     let built = session.ready(artwork, None)?.built.whole;
     let map = &built.map;
-    let work = if m.get_flag("all") { ALL } else { POINT };
+    let work = if m.get_flag("all") { WORK_FOR_PREIMAGES } else { WORK_FOR_POINT };
     let spent = budget.spend(work * map.cost().work * points.len() as f64);
     spent.map_err(|e| Failure::of_recipe(GeometryError::Limit(e).into()))?;
     if let Some(curves) = exact {

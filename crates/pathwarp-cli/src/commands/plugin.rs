@@ -67,9 +67,9 @@ pub(super) fn check(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> R
 /// Prints the lines of one check.
 fn print_check(check: &Check) -> Result<(), Failure> {
     let word = if check.faults.is_empty() { "ok  " } else { "FAIL" };
-    let mut out = format!("  {word}  {:<10}  {}\n", check.name, readable::message(&check.detail));
+    let mut out = format!("  {word}  {:<10}  {}\n", check.name, readable::safe_message(&check.detail));
     for fault in &check.faults {
-        let _ = writeln!(out, "        {:<10}  {}", "", readable::message(fault));
+        let _ = writeln!(out, "        {:<10}  {}", "", readable::safe_message(fault));
     }
     output::to_stdout(out.as_bytes())
 }

@@ -32,7 +32,7 @@ pub(super) fn described(info: &Info) -> Command {
     }
     let _ = write!(examples, "\n\nSource: {}", info.source);
     Command::new(info.name)
-        .aliases(steps::aliases(info.name))
+        .aliases(steps::alias(info.name))
         .about(info.title)
         .long_about(format!("{} — {}\n\n{}", info.name, info.title, info.about))
         .after_help(examples)

@@ -1,6 +1,6 @@
 //! Bends objects by hand: opens the editor on them, and converts its steps to words of a command line.
 
-use super::line::{exclusions, option_name, referred, with_frame};
+use super::line::{exclusions, option_name, referred, with_resulting_frame};
 use super::names::{CHAIN, joined, split};
 use super::restoring::{Restoration, restore, with_changes_by_hand, with_sources};
 use super::stage::{Scope, Stage, folder};
@@ -19,12 +19,13 @@ use std::sync::Arc;
 /// The option for objects without a warp, as in the dialogs.
 const USUAL: &str = "--clones=follow";
 
-/// Opens the page, and warps the selected objects by the steps that the user confirms. Returns the drawing, or nothing if there are none.
+/// Opens the editor on the selected objects, or else on all, and warps them by the steps that the user confirms. Returns the new drawing,
+/// without an earlier warp if there are no steps, or an empty text if the user confirms nothing.
 pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
     let drawing = stage.drawing()?;
     let all = objects(&drawing, &stage.limits())?;
-    let is_whole_page = stage.call.ids.is_empty();
-    let is_chosen = |o: &&Object| match is_whole_page {
+    let takes_all = stage.call.ids.is_empty();
+    let is_chosen = |o: &&Object| match takes_all {
         true => o.is_top && !o.is_locked,
         false => stage.call.ids.contains(&o.id),
     };
@@ -33,18 +34,19 @@ pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
         return Err(Failure::usage("there is nothing to bend in the drawing"));
     }
     let earlier = common_recipe(&all, &artwork);
-    // Objects whose nodes were moved after their warp are bent as they are, since their sources would lose that.
+    // Objects whose nodes were moved by hand since their warp cannot be restored without loss, and are bent as they are.
+    let discard = false;
     let (Restoration { svg, objects: restored }, earlier) =
-        match restore(stage, &drawing, if earlier.is_some() { &artwork } else { &[] }, false) {
+        match restore(stage, &drawing, if earlier.is_some() { &artwork } else { &[] }, discard) {
             Ok(restoration) => (restoration, earlier),
-            Err(_) => (restore(stage, &drawing, &[], false)?, None),
+            Err(_) => (restore(stage, &drawing, &[], discard)?, None),
         };
 
     let mut options = earlier.as_ref().map_or_else(|| vec![USUAL.to_owned()], |line| options_of(line));
-    if is_whole_page && earlier.is_none() {
+    if takes_all && earlier.is_none() {
         options.extend(exclusions(&all));
     }
-    let scope = Scope { ids: if is_whole_page { &[] } else { &artwork } };
+    let scope = Scope { ids: if takes_all { &[] } else { &artwork } };
     let opened = match &earlier {
         // The editor opens a result that contains its source and recipe with its steps.
         Some(line) => stage.warp(&svg, &[&line[..], &["--embed-recipe".to_owned()]].concat(), &scope, None)?.svg,
@@ -56,9 +58,9 @@ pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
     }
     let line = [words_of(stage, &recipe), options].concat();
     let outcome = stage.warp(&svg, &line, &scope, None)?;
-    stage.check(&svg, &outcome)?;
+    stage.report_left_out(&svg, &outcome)?;
     let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
-    let recipe = joined(&with_frame(stage, line, &outcome));
+    let recipe = joined(&with_resulting_frame(stage, line, &outcome));
     let result = with_sources(stage, &svg, &outcome.svg, &artwork, &recipe, &guides)?;
     with_changes_by_hand(stage, &drawing, result, &restored)
 }
@@ -72,7 +74,7 @@ fn common_recipe(all: &[Object], ids: &[String]) -> Option<Vec<String>> {
     (recipes.all(|r| r == Some(first)) && referred(&line).iter().all(is_there)).then_some(line)
 }
 
-/// Opens the page on a drawing. Returns the steps that the user confirms.
+/// Opens the editor on a drawing. Returns the steps that the user confirms; `None` if the user cancels.
 fn edit(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -> Result<Option<Recipe>, Failure> {
     let mut given = Given::default();
     let mut set = |name: &str, value: &str| given.set(name, value).map_err(Failure::Usage);
@@ -98,7 +100,7 @@ fn edit(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -> 
         open: true,
     };
     let host = Arc::new(EngineHost::new(stage.registry.clone(), Given::default().keeping_pages(), given));
-    watch::rest();
+    watch::pause();
     pathwarp_editor::serve(host, &options, |_| ()).map_err(Failure::Input)
 }
 

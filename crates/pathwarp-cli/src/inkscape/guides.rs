@@ -28,7 +28,7 @@ impl Sorted {
 }
 
 /// Divides the selection of a call. `given` has the words for the deformation's parameters from the dialog.
-pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[String]) -> Result<Sorted, Failure> {
+pub(super) fn divide(info: &Info, objects: &[Object], call: &Call, given: &[String]) -> Result<Sorted, Failure> {
     let is_given = |p: &Param| given.iter().any(|word| option_name(word) == Some(p.name));
     let open: Vec<&Param> = info.params.iter().filter(|p| p.kind == Kind::Path && !is_given(p)).collect();
     let selected: Vec<&Object> = objects.iter().filter(|o| call.ids.contains(&o.id)).collect();

@@ -19,7 +19,7 @@ pub(super) fn exclusions(all: &[Object]) -> impl Iterator<Item = String> {
 }
 
 /// Adds the resulting frame to a recipe, so that the recipe has the same effect on each object alone.
-pub(super) fn with_frame(stage: &Stage<'_>, mut line: Vec<String>, outcome: &Outcome) -> Vec<String> {
+pub(super) fn with_resulting_frame(stage: &Stage<'_>, mut line: Vec<String>, outcome: &Outcome) -> Vec<String> {
     let Some([x, y, w, h]) = outcome.frame else { return line };
     line.retain(|word| !word.starts_with("--frame="));
     line.push(format!("--frame={x},{y},{w},{h}"));

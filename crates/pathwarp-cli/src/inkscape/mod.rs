@@ -14,9 +14,9 @@ mod stage;
 
 use crate::ending::Status;
 use crate::plugins;
-use guides::sorted;
+use guides::divide;
 use line::{
-    change, check_recipe, exclusions, referred, with_frame, with_ids, without_missing, words_of_deformation,
+    change, check_recipe, exclusions, referred, with_ids, with_resulting_frame, without_missing, words_of_deformation,
     words_of_options,
 };
 use names::{ADD, AGAIN, CHAIN, CHANGES, DISCARD, REPLACE, SHOW, is_job, joined, split};
@@ -38,19 +38,19 @@ pub(crate) fn is_call(args: &[OsString]) -> bool {
 /// Executes a call by Inkscape.
 pub(crate) fn run(registry: &Registry, args: &[OsString], convert: Convert) -> Result<Status, Failure> {
     let call = Call::read(args)?;
-    let word = match &call.job {
+    // A command that needs the same plug-ins: a recipe may name any deformation.
+    let command = match &call.job {
         Job::Deformation(name) => name,
-        // A recipe may name any deformation, so all plug-ins are loaded.
-        Job::Edit | Job::Hand => "list",
+        Job::Edit | Job::EditByHand => "list",
         Job::Release | Job::Convert(_) => "convert",
     };
-    let (_, plugins) = plugins::load(registry, &["pathwarp".into(), word.into()], &[])?;
+    let (_, plugins) = plugins::load(registry, &["pathwarp".into(), command.into()], &[])?;
     let stage = Stage { registry: &plugins.added_to(registry), convert, call: &call };
     let result = match &call.job {
         Job::Deformation(name) => warp(&stage, name),
         Job::Edit => edit_again(&stage),
         Job::Release => release(&stage),
-        Job::Hand => by_hand::by_hand(&stage),
+        Job::EditByHand => by_hand::by_hand(&stage),
         Job::Convert(format) => return stage.convert(format).map_err(|f| in_a_window(&stage, &f)),
     };
     let svg = result.map_err(|f| in_a_window(&stage, &f))?;
@@ -72,41 +72,42 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
     let drawing = stage.drawing()?;
     let all = objects(&drawing, &stage.limits())?;
     let given = words_of_deformation(entry.info(), call);
-    let sorted = sorted(entry.info(), &all, call, &given)?;
+    let chosen = divide(entry.info(), &all, call, &given)?;
 
     let mode = call.value(AGAIN).unwrap_or_default();
     let starts_again = |o: &&Object| {
         let is_of_this_kind = |recipe: &str| {
+            // A recipe of several steps is of no one kind.
             let line = split(recipe);
             line.first().is_some_and(|w| w == name) && !line.iter().any(|w| w == CHAIN)
         };
         let is_replaced = |recipe: &str| mode == REPLACE || (mode != ADD && is_of_this_kind(recipe));
-        sorted.artwork.contains(&o.id) && o.recipe.as_deref().is_some_and(is_replaced)
+        chosen.artwork.contains(&o.id) && o.recipe.as_deref().is_some_and(is_replaced)
     };
     let again: Vec<String> = all.iter().filter(starts_again).map(|o| o.id.clone()).collect();
     let Restoration { svg, objects: restored } = restore(stage, &drawing, &again, call.is_on(DISCARD))?;
 
-    let mut line: Vec<String> = std::iter::once(name.to_owned()).chain(given).chain(sorted.words()).collect();
+    let mut line: Vec<String> = std::iter::once(name.to_owned()).chain(given).chain(chosen.words()).collect();
     line = with_ids(line, &all);
     line.extend(words_of_options(call));
-    // On the whole page, locked objects are excluded.
+    // Without a selection, locked objects are excluded.
     let is_whole_page = call.ids.is_empty();
     if is_whole_page {
         line.extend(exclusions(&all));
     }
-    let outcome = stage.warp(&svg, &line, &Scope { ids: if is_whole_page { &[] } else { &sorted.artwork } }, None)?;
-    stage.check(&svg, &outcome)?;
+    let outcome = stage.warp(&svg, &line, &Scope { ids: if is_whole_page { &[] } else { &chosen.artwork } }, None)?;
+    stage.report_left_out(&svg, &outcome)?;
 
     let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
-    let recipe = joined(&with_frame(stage, line, &outcome));
-    let result = with_sources(stage, &svg, &outcome.svg, &sorted.artwork, &recipe, &guides)?;
+    let recipe = joined(&with_resulting_frame(stage, line, &outcome));
+    let result = with_sources(stage, &svg, &outcome.svg, &chosen.artwork, &recipe, &guides)?;
     with_changes_by_hand(stage, &drawing, result, &restored)
 }
 
 /// Replaces the selected objects by their sources. Returns the drawing.
 fn release(stage: &Stage<'_>) -> Result<String, Failure> {
     let drawing = stage.drawing()?;
-    let ids = targets(stage, &objects(&drawing, &stage.limits())?)?;
+    let ids = warped_targets(stage, &objects(&drawing, &stage.limits())?)?;
     Ok(objects::restore(&drawing, &ids, &stage.limits())?.svg)
 }
 
@@ -115,9 +116,9 @@ fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
     let call = stage.call;
     let drawing = stage.drawing()?;
     let all = objects(&drawing, &stage.limits())?;
-    let ids = targets(stage, &all)?;
+    let ids = warped_targets(stage, &all)?;
     if call.is_on(SHOW) {
-        anstream::eprintln!("{}", readable::message(&settings(&all, &ids)));
+        anstream::eprintln!("{}", readable::safe_message(&settings(&all, &ids)));
         return Ok(String::new());
     }
     let Restoration { mut svg, objects: restored } = restore(stage, &drawing, &ids, call.is_on(DISCARD))?;
@@ -133,22 +134,22 @@ fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
         let ids: Vec<String> = members.iter().map(|r| r.object.id.clone()).collect();
         let referred = referred(&line);
         let is_there = |id: &String| all.iter().any(|o| o.id == *id);
-        // A missing guide is replaced by the copy that the object stores.
+        // If a guide is missing, the copies that the first object stores are the guides of all.
         let guides = match members.first() {
             Some(member) if !referred.iter().all(is_there) => member.object.guides.clone(),
             _ => Guides::of(&svg, &referred, &stage.limits())?,
         };
         let copies = GuidePaths { guides: &guides, has: &|id| !all.iter().any(|o| o.id == id) };
         let outcome = stage.warp(&svg, &line, &Scope { ids: &ids }, Some(&copies))?;
-        stage.check(&svg, &outcome)?;
-        let recipe = joined(&with_frame(stage, line, &outcome));
+        stage.report_left_out(&svg, &outcome)?;
+        let recipe = joined(&with_resulting_frame(stage, line, &outcome));
         svg = with_sources(stage, &svg, &outcome.svg, &ids, &recipe, &guides)?;
     }
     with_changes_by_hand(stage, &drawing, svg, &restored)
 }
 
 /// Returns the warped objects that a selection concerns: those selected, or else inside it, or else around it.
-fn targets(stage: &Stage<'_>, all: &[Object]) -> Result<Vec<String>, Failure> {
+fn warped_targets(stage: &Stage<'_>, all: &[Object]) -> Result<Vec<String>, Failure> {
     let mut out: Vec<String> = Vec::new();
     let warped = || all.iter().filter(|o| o.recipe.is_some());
     for id in &stage.call.ids {

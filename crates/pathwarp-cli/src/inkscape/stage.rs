@@ -110,7 +110,7 @@ impl Stage<'_> {
     }
 
     /// Reports objects that were left out: as an error if nothing else happened, else on request.
-    pub(super) fn check(&self, before: &str, outcome: &Outcome) -> Result<(), Failure> {
+    pub(super) fn report_left_out(&self, before: &str, outcome: &Outcome) -> Result<(), Failure> {
         if outcome.partial && outcome.svg == before {
             return Err(Failure::Geometry(outcome.remarks.join("\n")));
         }
@@ -196,7 +196,7 @@ pub(super) enum Job {
     Edit,
     Release,
     /// Open the editor's page.
-    Hand,
+    EditByHand,
     /// Convert the file to this format, or open it if that is `svg`.
     Convert(String),
 }
@@ -243,7 +243,7 @@ fn action(value: &str) -> Result<Job, Failure> {
     match value {
         "edit" => Ok(Job::Edit),
         "release" => Ok(Job::Release),
-        "hand" => Ok(Job::Hand),
+        "hand" => Ok(Job::EditByHand),
         _ => {
             let format = value.strip_prefix("to-").map(|format| Job::Convert(format.to_owned()));
             format.ok_or_else(|| Failure::usage(format!("there is no effect `{value}` for Inkscape")))

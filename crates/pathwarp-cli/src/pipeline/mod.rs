@@ -42,7 +42,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
     watch::begin(options.reading.limits);
     let inputs = plan::inputs(&options)?;
     options.reading.check()?;
-    let inputs = Inputs { files: &inputs, kind: "input", replaceable: true, result: convert::identity };
+    let inputs = Inputs { files: &inputs, kind: "input", replaceable: true, corrected_name: convert::identity };
     let jobs = inputs.plan(registry, recipe, &options, from)?;
     // The files of a batch belong together, so their pages stay.
     let is_batch = jobs.len() > 1 || options.out_dir.is_some() || options.in_place || options.recursive;

@@ -33,18 +33,18 @@ pub(crate) struct Inputs<'a> {
     pub(crate) kind: &'static str,
     /// `true` if `--in-place` is possible.
     pub(crate) replaceable: bool,
-    /// Corrects the name of a result in a folder.
-    pub(crate) result: fn(PathBuf) -> PathBuf,
+    /// Corrects the extension of a result in `--out-dir`, if the result has not the format of the input.
+    pub(crate) corrected_name: fn(PathBuf) -> PathBuf,
 }
 
 impl Inputs<'_> {
-    /// Plans the jobs of a recipe (from the file `from`, if there is one), and checks that no source and no output is overwritten.
+    /// Plans the jobs of a recipe (from `recipe_file`, if there is one), and checks that no source and no output is overwritten.
     pub(crate) fn plan(
         &self,
         catalogue: &dyn Catalogue,
         recipe: &Recipe,
         options: &CommonOptions,
-        from: Option<&Path>,
+        recipe_file: Option<&Path>,
     ) -> Result<Vec<Job>, Failure> {
         for (option, name) in [("-o", &options.out), ("--out-dir", &options.out_dir), ("--preview", &options.preview)] {
             if let Some(word) = name.as_deref().and_then(unknown_placeholder) {
@@ -57,27 +57,27 @@ impl Inputs<'_> {
         }
         let jobs: Vec<Job> = self.files.iter().map(|i| self.job(options, i)).collect::<Result<_, _>>()?;
         let mut files = Files::default();
-        files_read(catalogue, recipe).iter().for_each(|f| files.read(f));
-        from.iter().for_each(|f| files.read(f));
-        options.reading.fonts.paths.iter().for_each(|f| files.read(f));
+        files_read(catalogue, recipe).iter().for_each(|f| files.add_source(f));
+        recipe_file.iter().for_each(|f| files.add_source(f));
+        options.reading.fonts.paths.iter().for_each(|f| files.add_source(f));
         for job in &jobs {
-            if self.replaceable { files.read_artwork(&job.input) } else { files.read(&job.input) }
+            if self.replaceable { files.add_artwork(&job.input) } else { files.add_source(&job.input) }
         }
         if options.in_place {
             files.allow_in_place();
         }
         for job in &jobs {
             if options.into.is_none() {
-                files.write(job.target.as_deref().unwrap_or(Path::new("-")), "")?;
+                files.add_output(job.target.as_deref().unwrap_or(Path::new("-")), "")?;
             }
             if let Some(preview) = &job.preview {
-                files.write(preview, "preview")?;
+                files.add_output(preview, "preview")?;
             }
         }
         let others = [("into", &options.into), ("report", &options.report), ("write-recipe", &options.write_recipe)];
         let others = others.into_iter().filter_map(|(option, file)| Some((option, file.as_deref()?)));
         for (option, file) in others.chain(files_written(catalogue, recipe)) {
-            files.write(file, option)?;
+            files.add_output(file, option)?;
         }
         Ok(jobs)
     }
@@ -95,6 +95,7 @@ impl Inputs<'_> {
             return Err(Failure::usage("--into writes one file; give one XCF"));
         }
         if !(options.out_dir.is_some() || names_by_pattern || (options.in_place && options.out.is_none())) {
+            // FILE#NAME is a part of a file.
             let exists = |p: &Path| p.as_os_str() == "-" || p.exists() || p.to_string_lossy().contains('#');
             if let Some(missing) = self.files.iter().map(|f| &*f.path).find(|path| !exists(path)) {
                 let e = missing.metadata().err().unwrap_or_else(|| std::io::ErrorKind::NotFound.into());
@@ -119,19 +120,18 @@ impl Inputs<'_> {
         Ok(())
     }
 
-    /// Returns the outputs of an input.
     fn job(&self, options: &CommonOptions, input: &InputFile) -> Result<Job, Failure> {
-        let InputFile { path, below, refused } = input;
+        let InputFile { path, subfolder, refused } = input;
         let unnamed = |option: &str| Failure::usage(format!("{option} needs named {}s", self.kind));
         let expanded = |pattern: &PathBuf, option: &str| {
-            let name = if is_pattern(pattern) { by_pattern(pattern, path, below) } else { Some(pattern.clone()) };
+            let name = if is_pattern(pattern) { by_pattern(pattern, path, subfolder) } else { Some(pattern.clone()) };
             name.ok_or_else(|| unnamed(option))
         };
         let target = match (&options.out_dir, &options.out) {
             (Some(dir), _) => {
                 let extension = options.format.map(Format::extension);
-                let target = in_folder(dir, path, below, extension).ok_or_else(|| unnamed("--out-dir"))?;
-                Some((self.result)(target))
+                let target = in_folder(dir, path, subfolder, extension).ok_or_else(|| unnamed("--out-dir"))?;
+                Some((self.corrected_name)(target))
             }
             (None, Some(out)) => Some(expanded(out, "{stem}")?),
             (None, None) if options.in_place && options.into.is_none() => {
@@ -156,9 +156,9 @@ pub(super) fn listing(recipe: &Recipe, options: &CommonOptions, jobs: &[Job]) ->
         if !step.exclude.is_empty() {
             parts += &format!(" without {}", step.exclude.join(", "));
         }
-        let _ = writeln!(out, "step {number}, {}: {}", step.deformation, readable::name(&parts));
+        let _ = writeln!(out, "step {number}, {}: {}", step.deformation, readable::safe_name(&parts));
     }
-    let name = |path: &Path| readable::name(&path.display().to_string()).into_owned();
+    let name = |path: &Path| readable::safe_name(&path.display().to_string()).into_owned();
     for job in jobs {
         let input = name(&job.input);
         if let Some(why) = job.refused {
@@ -183,12 +183,11 @@ pub(super) fn listing(recipe: &Recipe, options: &CommonOptions, jobs: &[Job]) ->
     out
 }
 
-/// An input file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct InputFile {
     pub(crate) path: PathBuf,
     /// The folder of a file that was found in a folder, relative to that; else empty.
-    pub(crate) below: PathBuf,
+    pub(crate) subfolder: PathBuf,
     /// The reason why a file found in a folder is not read.
     pub(crate) refused: Option<&'static str>,
 }
@@ -196,7 +195,7 @@ pub(crate) struct InputFile {
 impl InputFile {
     /// A file named by the user.
     pub(crate) fn named(path: impl Into<PathBuf>) -> Self {
-        Self { path: path.into(), below: PathBuf::new(), refused: None }
+        Self { path: path.into(), subfolder: PathBuf::new(), refused: None }
     }
 }
 
@@ -238,9 +237,9 @@ fn drawings_in(folder: &Path, options: &CommonOptions, out: &mut Vec<InputFile>)
         let entry = entry.map_err(|e| Failure::file(e.path().unwrap_or(folder), format!("cannot be read: {e}")))?;
         let path = entry.path();
         if matches!(Format::of(path), Some(Format::Svg | Format::Svgz)) && !path.is_dir() {
-            let below = path.strip_prefix(folder).ok().and_then(Path::parent).unwrap_or(Path::new(""));
+            let subfolder = path.strip_prefix(folder).ok().and_then(Path::parent).unwrap_or(Path::new(""));
             let refused = refused(&entry, folder, options.reading.external);
-            out.push(InputFile { path: path.to_owned(), below: below.to_owned(), refused });
+            out.push(InputFile { path: path.to_owned(), subfolder: subfolder.to_owned(), refused });
         }
     }
     Ok(())
@@ -282,25 +281,25 @@ pub(super) fn fixed_folder(pattern: &Path) -> PathBuf {
     pattern.components().take_while(is_fixed).collect()
 }
 
-/// Returns the output of `input` by the file name `pattern`. `below` is the input's folder within one given with `--recursive`, which is
-/// repeated. `None` if the input has no name.
-pub(super) fn by_pattern(pattern: &Path, input: &Path, below: &Path) -> Option<PathBuf> {
+/// Returns the output of `input` by the file name `pattern`. `subfolder` is the input's folder within one given with `--recursive`, which
+/// is repeated. `None` if the input has no name.
+pub(super) fn by_pattern(pattern: &Path, input: &Path, subfolder: &Path) -> Option<PathBuf> {
     let output = PathBuf::from(pattern.to_string_lossy().replace(STEM, &stem(input)?));
     let file = output.file_name()?;
-    Some(output.parent().unwrap_or(Path::new("")).join(below).join(file))
+    Some(output.parent().unwrap_or(Path::new("")).join(subfolder).join(file))
 }
 
-/// Returns the output of `input` in the folder `dir`, or by the pattern `dir` of folders or of a file with an extension. In a folder, it
-/// has the input's name, with `extension` if given. `None` if the input has no name.
-pub(super) fn in_folder(dir: &Path, input: &Path, below: &Path, extension: Option<&str>) -> Option<PathBuf> {
+/// Returns the output of `input` for `--out-dir`. If the last part of `dir` has {stem} and an extension, `dir` is the pattern of a file. If
+/// not, it is a folder, perhaps with {stem}, and the output has the input's name, with `extension` if given. `None` if that has no name.
+pub(super) fn in_folder(dir: &Path, input: &Path, subfolder: &Path, extension: Option<&str>) -> Option<PathBuf> {
     let last = dir.file_name().unwrap_or_default();
     if is_pattern(Path::new(last)) && dir.extension().is_some() {
-        return by_pattern(dir, input, below);
+        return by_pattern(dir, input, subfolder);
     }
     let name = result_name(input)?;
     let name = extension.map_or(name.clone(), |e| name.with_extension(e));
     let dir = if is_pattern(dir) { dir.to_string_lossy().replace(STEM, &stem(input)?).into() } else { dir.to_owned() };
-    Some(dir.join(below).join(name))
+    Some(dir.join(subfolder).join(name))
 }
 
 /// Returns the file name of an input's result: the input's, or for a GIMP file the name of its SVG.
@@ -366,9 +365,10 @@ mod tests {
     #[test]
     fn patterns_and_folders() {
         let input = Path::new("art/sub/cat.svg");
-        let named =
-            |dir: &str, below: &str, extension| in_folder(Path::new(dir), input, Path::new(below), extension).unwrap();
-        let name = |dir: &str, below: &str| named(dir, below, None);
+        let named = |dir: &str, folder: &str, extension| {
+            in_folder(Path::new(dir), input, Path::new(folder), extension).unwrap()
+        };
+        let name = |dir: &str, folder: &str| named(dir, folder, None);
         assert_eq!(name("out", ""), Path::new("out/cat.svg"));
         assert_eq!(name("out", "sub"), Path::new("out/sub/cat.svg"));
         assert_eq!(name("out/{stem}", ""), Path::new("out/cat/cat.svg"));

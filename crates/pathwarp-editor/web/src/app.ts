@@ -51,7 +51,7 @@ export class App {
   gone: number[] = [];
   handles: Handles | null = null;
   /** A path of the drawing that was a guide until its line was dragged. */
-  released: string | null = null;
+  freedPath: string | null = null;
   summary: Summary | null = null;
   warnings: string[] = [];
   problem: string | null = null;
@@ -517,7 +517,7 @@ export class App {
   }
 
   private takeHandles(): void {
-    this.released = this.handles?.released ?? null;
+    this.freedPath = this.handles?.freedPath ?? null;
     const deformation = this.deformation(this.step?.deformation);
     const grips = this.grips[this.selected];
     this.handles = this.step && deformation && grips ? new Handles(deformation, this.step, grips) : null;

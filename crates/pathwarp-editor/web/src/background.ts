@@ -3,7 +3,7 @@
 import type { App } from "./app";
 import { ARROWS, byId, onFile, s } from "./dom";
 import { parseWithPrefix } from "./drawing";
-import { Field, asked, inUnits, MM } from "./fields";
+import { Field, describeLimits, inUnits, MM } from "./fields";
 import { base64 } from "./opening";
 import type { Stage } from "./stage";
 import type { XY } from "./types";
@@ -55,7 +55,7 @@ export class Background {
   /** `true` once the server has been asked for the background, or has stored it. */
   private isKept = false;
   /** Requests points around the object in a photograph. */
-  onRound: (take: (value: string) => void) => void = () => {};
+  onOutline: (take: (value: string) => void) => void = () => {};
 
   constructor(private app: App, private stage: Stage) {
     stage.behind.append(this.layer);
@@ -79,7 +79,7 @@ export class Background {
     for (const [name, [unit, size, least]] of Object.entries(TYPED) as [keyof Placement, [string, number, number?]][]) {
       const input = byId<HTMLInputElement>(`background-${name}`);
       const number = (text: string) => inUnits(text, unit) ?? NaN;
-      const isWrong = (text: string) => (number(text) >= (least ?? -Infinity) ? null : asked(unit, least));
+      const isWrong = (text: string) => (number(text) >= (least ?? -Infinity) ? null : describeLimits(unit, least));
       const field = new Field(input, () => String(Number((this.placement[name] / size).toFixed(2))), (text) => {
         this.move({ [name]: number(text) * size });
         void this.keep();
@@ -269,7 +269,7 @@ export class Background {
     if (!file || !variant) return;
     const choose = (value: string) => void app.choose("envelope", { envelope: [value] }, variant.label);
     this.show(false);
-    if (!this.isDrawing) return this.onRound(choose);
+    if (!this.isDrawing) return this.onOutline(choose);
     if (outlines.childElementCount === 0) {
       const bytes = await base64(file);
       const answer = await app.request({ do: "drawn", name: file.name, bytes });
@@ -283,7 +283,7 @@ export class Background {
     if (paths.length === 0) return app.fail(`${file.name} has no paths: click points around a shape with “Draw path” among the settings of “${variant.label}”`);
     const [only] = paths;
     if (only && paths.length === 1 && !/Z.*M/i.test(only.getAttribute("d") ?? "")) return choose(ring(only, stage, this.corners[0]!));
-    stage.pick((path, at) => choose(ring(path, stage, stage.camera.inPx(at))), ".outlines path", `Click a path of ${file.name}`);
+    stage.pick((path, at) => choose(ring(path, stage, stage.camera.inPx(at))), `Click a path of ${file.name}`, ".outlines path");
   }
 }
 

@@ -79,7 +79,7 @@ export function inUnits(text: string, unit: string): number | null {
   return evaluate(`0${unit}+(${text})`, unit)?.value ?? null;
 }
 
-/** Returns the number of units `to` in a unit. */
+/** Returns the number of units `to` in a unit `from`. */
 function factor(from: string, to: string): number {
   if (from === to) return 1;
   const [a, b] = [LENGTHS[from], LENGTHS[to]];
@@ -91,7 +91,7 @@ function factor(from: string, to: string): number {
 const BOUNDLESS = 1e6;
 
 /** Returns a description of the permitted values, as the message for a wrong one. */
-export function asked(unit: string, from = -Infinity, to = Infinity, isWhole = false): string {
+export function describeLimits(unit: string, from = -Infinity, to = Infinity, isWhole = false): string {
   const [least, most] = [Number(from.toPrecision(6)), to < BOUNDLESS ? to : Infinity];
   const [what, end] = [isWhole ? "A whole number" : "A number", unit && ` ${unit}`];
   if (least > -Infinity && most < Infinity) return `${what} from ${least} to ${most}${end}`;
@@ -120,7 +120,7 @@ export class Field {
   private wrongFor: string | null = null;
   private shown = "";
 
-  /** `take` accepts a text and returns its problem, if any; `isWrong` checks texts while they are typed. */
+  /** `take` accepts a text and returns its problem; `isWrong` checks typed texts; `nudge` moves the value by steps and returns its text. */
   constructor(
     readonly input: Editable, private read: () => string, private take: (text: string) => string | null | Promise<string | null>,
     private isWrong: (text: string) => string | null = () => null, nudge?: (text: string, by: number) => string | null,

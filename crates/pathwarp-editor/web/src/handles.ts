@@ -5,7 +5,7 @@ import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
 import { dials, type Dial } from "./dials";
 import { called, words } from "./names";
 import { inSpace } from "./space";
-import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
+import { drop, end, middle, nearest, raised, split, type Spot, withClosingLine } from "./knots";
 
 /** A point on a path of a parameter; `id` is the indices of the path and of its subpath, as in keys of handles. */
 interface PathHit {
@@ -47,7 +47,7 @@ export class Handles {
   /** Handles of numbers. */
   private dials: Dial[] = [];
   /** A path of the drawing that a parameter referred to before its line was dragged. */
-  released: string | null = null;
+  freedPath: string | null = null;
   /** Indices of the control points of nets that have been moved, by parameter. */
   private moved: Record<string, Set<number>> = {};
 
@@ -71,7 +71,7 @@ export class Handles {
       if (name === this.deformation.gallery?.bend && grip.value !== undefined) this.addBend(name, grip);
       if (name === "radius" && grip.value !== undefined && this.grips.center?.point) this.addRadius(name, grip);
       if (grip.circle) this.addCircle(name, grip);
-      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? closed(sub) : sub, `${i}.${j}`)));
+      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? withClosingLine(sub) : sub, `${i}.${j}`)));
     }
     // The fixed point of a rotation or scaling has no effect alone, so dials are added.
     const isAnamorphosis = this.grips.eye || this.grips["eye-height"];
@@ -431,7 +431,7 @@ export class Handles {
     else {
       const before = this.step.args[name] ?? [];
       this.step.args[name] = valuesOf(param, grip, this.frame, before);
-      this.released ??= before.find((value) => value.startsWith("#")) ?? null;
+      this.freedPath ??= before.find((value) => value.startsWith("#")) ?? null;
     }
   }
 

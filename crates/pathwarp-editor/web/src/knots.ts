@@ -1,4 +1,4 @@
-// Adds and removes points of paths without changing the rest.
+// Adds and removes nodes of paths without changing the rest. Pieces are the segments of a path.
 
 import type { Subpath, XY } from "./types";
 
@@ -40,8 +40,8 @@ function scheme(points: XY[], t: number): XY[][] {
   return rows;
 }
 
-/** Adds the line to the start of a closed path, if the path omits it. */
-export function closed(sub: Subpath): Subpath {
+/** Appends the line back to the start, if the path is closed and omits it. */
+export function withClosingLine(sub: Subpath): Subpath {
   const last = sub.segments[sub.segments.length - 1];
   const isOpen = last && Math.hypot(end(last)[0] - sub.start[0], end(last)[1] - sub.start[1]) > 1e-9;
   if (sub.closed && isOpen) sub.segments.push([...sub.start]);
@@ -84,7 +84,7 @@ export function split(sub: Subpath, { piece: k, t }: Spot): void {
   sub.segments.splice(k, 1, first.flat(), second.flat());
 }
 
-/** Removes a node; the adjacent pieces are joined, and keep their outer control points. */
+/** Removes a node; the adjacent pieces are joined, and keep their outer control points. A closed path has two or more, none omitted. */
 export function drop(sub: Subpath, node: number): void {
   const { segments } = sub;
   if (!sub.closed && node === 0) {

@@ -31,6 +31,7 @@ const report = new Report(app);
 const saving = new Saving(app);
 const settings = new Settings(app);
 new Presets(app, new Gallery(app));
+// The ground is the sheet under the drawing; the background is a template, which is not saved.
 new Ground(app);
 new Steps(app);
 new Parts(app, stage, modes);
@@ -50,12 +51,12 @@ settings.onDraw = (kind, take) => {
   closeSheets();
   sketching.begin(kind, take);
 };
-background.onRound = (take) => sketching.begin("round", take);
-settings.onOther = () => sketching.end();
+background.onOutline = (take) => sketching.begin("round", take);
+settings.onStepChange = () => sketching.end();
 settings.onPick = (take) => {
   closeSheets();
   sketching.end();
-  stage.pick((path) => take(partOf(path.closest("[id]")!.id)), undefined, "Click a path of the drawing");
+  stage.pick((path) => take(partOf(path.closest("[id]")!.id)), "Click a path of the drawing");
 };
 
 function on(id: string, action: () => void): void {
@@ -93,7 +94,7 @@ function toggle(id: string, get: () => boolean, set: (value: boolean) => void): 
 
 toggle("select", () => modes.selects, (v) => {
   modes.selects = v;
-  stage.svg.classList.toggle("selecting", stage.selects);
+  stage.svg.classList.toggle("selecting", stage.isSelecting);
 });
 toggle("pick-parts", () => modes.picksParts, (v) => {
   modes.picksParts = v;
@@ -107,9 +108,9 @@ toggle("nodes", () => stage.showsNodes, (v) => {
   stage.showsNodes = v;
   stage.drawNodes();
 });
-const showEnd = toggle("end", () => stage.showsEnd, (v) => {
-  stage.showsEnd = v;
-  void stage.drawEnd();
+const showFinalResult = toggle("end", () => stage.showsFinalResult, (v) => {
+  stage.showsFinalResult = v;
+  void stage.drawFinalResult();
 });
 toggle("stretch", () => stage.showsStretch, (v) => {
   stage.showsStretch = v;
@@ -164,7 +165,7 @@ const KEYS: Record<string, () => void> = {
   "-": () => stage.zoom(1 / ZOOM),
   "0": () => stage.fit(),
   b: () => void stage.showBefore(true),
-  e: showEnd,
+  e: showFinalResult,
   "?": () => showKeys(),
 };
 const COMMANDS: Record<string, (shift: boolean) => void> = {
@@ -189,7 +190,7 @@ window.addEventListener("keyup", (e) => {
 });
 window.addEventListener("blur", hide);
 
-// Drafts store everything, if they can be written; a waiting program gets nothing from a closed page.
+// Ask before the page closes if something would be lost: no draft can be written, or a program waits for the result.
 window.addEventListener("beforeunload", (e) => {
   if (!app.isLive) return;
   void app.settle();

@@ -17,7 +17,7 @@ export class Modes {
   /** Shows the lines to which the handle has snapped, in user units. */
   onSnap: (x: number | null, y: number | null) => void = () => {};
 
-  /** Returns the other points to add with a point: its reflection, if symmetry is on. */
+  /** Returns the other points to add with a point: its reflection, if symmetry is on and that is more than `reach` (user units) away. */
   reflections(handles: Handles, at: XY, reach: number): XY[] {
     const other = reflection(handles)(at);
     return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
@@ -32,7 +32,7 @@ export class Modes {
       pulled.forEach((handle, i) => {
         const partner = partners[i] ?? null;
         const at = wanted[i]!;
-        // Each end of a line that is its reflection moves by the mean of both motions.
+        // If the line is its own reflection, each end moves by the mean of its motion and the reflected motion of the other end.
         const partnerIndex = partner ? pulled.indexOf(partner) : -1;
         const other = partnerIndex < 0 ? at : mirrored(wanted[partnerIndex]!);
         const target: XY = [(at[0] + other[0]) / 2, (at[1] + other[1]) / 2];
@@ -46,7 +46,7 @@ export class Modes {
   mover(handles: Handles, handle: Handle): (to: XY, e?: PointerEvent) => void {
     const partner = this.mirrors ? handles.partner(handle) : null;
     const mirrored = reflection(handles);
-    // The other handles do not move, so the lines to snap to are collected once.
+    // The other handles do not move, so the points to snap to are collected once, before the drag.
     this.snapPoints = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
     const start: XY = [...handle.get()];
     return (to, e) => {
@@ -58,7 +58,7 @@ export class Modes {
     };
   }
 
-  /** Returns the point near `to` that is aligned with the frame or another handle; Alt disables that. */
+  /** Returns the point within `reach` (user units) of `to` that is aligned with the frame or another handle; Alt disables that. */
   snapped(to: XY, handle: Handle, handles: Handles, reach: number, e: PointerEvent): XY {
     if (!this.snaps || e.altKey || handle.shape === "control") {
       this.onSnap(null, null);

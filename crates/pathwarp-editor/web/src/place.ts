@@ -2,7 +2,7 @@
 
 import type { App } from "./app";
 import { byId } from "./dom";
-import { asked, evaluate, Field, inUnits } from "./fields";
+import { describeLimits, evaluate, Field, inUnits } from "./fields";
 import type { Stage } from "./stage";
 import type { Handle } from "./types";
 import { short } from "./values";
@@ -36,7 +36,7 @@ export class Place {
         stage.moveTo(this.handle!, i === 0 ? [value, at[1]] : [at[0], value]);
       };
       const read = () => (this.handle ? shown(this.handle)[i]! : "");
-      const isWrong = (typed: string) => (coordinate(typed) === null ? `${asked("")} or 50 %` : null);
+      const isWrong = (typed: string) => (coordinate(typed) === null ? `${describeLimits("")} or 50 %` : null);
       const take = (typed: string) => {
         if (this.handle && typed !== read()) move(coordinate(typed)!);
         return null;

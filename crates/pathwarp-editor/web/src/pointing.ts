@@ -3,7 +3,7 @@
 import type { App } from "./app";
 import type { Modes } from "./modes";
 import { REACH, type Stage } from "./stage";
-import { together, type Part } from "./selection";
+import { groupMover, type Part } from "./selection";
 import { hush } from "./toast";
 import type { XY } from "./types";
 
@@ -65,7 +65,7 @@ export class Pointing {
   private press(e: PointerEvent): void {
     const { stage } = this;
     const target = e.target as Element;
-    // `onPick` is set while a path is asked for, `isBefore` while no steps are shown; `picksParts` and `selects` are modes.
+    // `onPick` is set while a path is asked for, `isBefore` while no steps are shown.
     if (stage.onPick) return stage.pickAt(e);
     this.down.set(e.pointerId, stage.point(e));
     if (this.down.size > 2) return;
@@ -80,7 +80,7 @@ export class Pointing {
     else if (this.modes.picksParts && bends) this.pan(e, () => stage.pickPartAt(e));
     else if (part && bends) this.transform(e, stage.selection.transform(part, stage.point(e)));
     else if (bends && !e.shiftKey && stage.selection.holds(stage.point(e))) this.transform(e, translation(stage.point(e)), () => stage.select([]));
-    else if (bends && (e.shiftKey || stage.selects)) this.frame(e);
+    else if (bends && (e.shiftKey || stage.isSelecting)) this.frame(e);
     else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage.select([]));
   }
 
@@ -177,7 +177,7 @@ export class Pointing {
     const { handles } = this.app;
     if (!handles) return;
     const { camera } = stage;
-    const mover = together(handles, stage.selection.of(handles), modes);
+    const mover = groupMover(handles, stage.selection.selectedOf(handles), modes);
     e.preventDefault();
     this.bend(e, (to, event) => {
       const map = image(to);

@@ -34,7 +34,7 @@ export class Report {
   private figures(): void {
     const { app } = this;
     const { state, summary, warnings } = app;
-    // Without changes, or without movement, there is nothing to count.
+    // A proposal changes nothing, and without movement the summary counts no segments.
     const isBent = !app.isProposal && summary !== null && summary.segmentsIn > 0;
     show("counts", isBent ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "");
     show("error", isBent && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "");
@@ -67,8 +67,8 @@ export class Report {
     byId("mirror").hidden = !has;
     byId("snap").hidden = !has;
     byId("select").hidden = (handles?.handles.length ?? 0) < 2;
-    if (app.released) toast(`The line has left ${app.released}, which is artwork again. Undo brings it back`);
-    app.released = null;
+    if (app.freedPath) toast(`The line has left ${app.freedPath}, which is artwork again. Undo brings it back`);
+    app.freedPath = null;
     if (app.appends) return show("note", "Choose the shape of the next step, or press Escape");
     if (app.steps.length === 0) return show("note", "Choose a shape");
     if (app.step?.hidden) return show("note", "This step is hidden: it bends nothing. The eye in the list brings it back");
@@ -76,6 +76,7 @@ export class Report {
     // The handles have not arrived yet.
     if (!handles) return;
     const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
+    // A net gets lines, a list gets points, and paths are divided.
     const adds = handles.net ? "Double-click a line to add another" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
     const note = isCaption(app.step ?? { deformation: "" }) ? "Pull the blue point to move the words, double-click to type" : !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
     show("note", app.isProposal && has ? `${note}, or choose a shape` : note);

@@ -51,13 +51,13 @@ export class Selection {
   }
 
   /** Returns the selected handles. */
-  of(handles: Handles): Handle[] {
+  selectedOf(handles: Handles): Handle[] {
     return handles.handles.filter(({ key }) => this.keys.has(key));
   }
 
   /** Fits the box around the selected points. */
   place(handles: Handles | null, toScreen: (p: XY) => XY): void {
-    const points = handles ? this.of(handles).map((h) => toScreen(h.get())) : [];
+    const points = handles ? this.selectedOf(handles).map((h) => toScreen(h.get())) : [];
     this.layer.setAttribute("visibility", points.length > 1 ? "visible" : "hidden");
     if (points.length < 2) return;
     const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
@@ -85,7 +85,7 @@ export class Selection {
       const [bx, by] = [to[0] - about[0], to[1] - about[1]];
       const [dot, cross] = [(ax * bx + ay * by) / square, (ax * by - ay * bx) / square];
       const size = Math.hypot(dot, cross) || 1;
-      // The map multiplies by re + i·im; the pointer may leave the circle or the diagonal.
+      // The map multiplies by re + i·im. Off the circle, only the pointer's angle counts; off the diagonal, only its share along it.
       const [re, im] = part === "turn" ? [dot / size, cross / size] : [dot, 0];
       return ([x, y]) => [about[0] + re * (x - about[0]) - im * (y - about[1]), about[1] + im * (x - about[0]) + re * (y - about[1])];
     };
@@ -94,7 +94,7 @@ export class Selection {
 
 /** Returns a function that maps handles by an image, along with the handles of their nodes and, if symmetry is on, with unselected
  * partners. It returns the names of the changed parameters. */
-export function together(handles: Handles, chosen: Handle[], modes: Modes): (image: (p: XY) => XY) => Set<string> {
+export function groupMover(handles: Handles, chosen: Handle[], modes: Modes): (image: (p: XY) => XY) => Set<string> {
   const keys = new Set(chosen.map(({ key }) => key));
   const arms = handles.handles.filter(({ key }) => !keys.has(key) && /\/(in|out)$/.test(key) && keys.has(key.replace(/\/(in|out)$/, "")));
   // Nodes come first, since they move their handles.
@@ -103,9 +103,9 @@ export function together(handles: Handles, chosen: Handle[], modes: Modes): (ima
   const partners = all.map((h) => (modes.mirrors ? handles.partner(h) : null)).map((p) => (p && !all.includes(p) ? p : null));
   const mirrored = reflection(handles);
   return (image) => {
-    const ends = starts.map(image);
-    all.forEach((h, i) => h.set(ends[i]!, false));
-    partners.forEach((p, i) => p?.set(mirrored(ends[i]!), false));
+    const [ends, smooth] = [starts.map(image), false];
+    all.forEach((h, i) => h.set(ends[i]!, smooth));
+    partners.forEach((p, i) => p?.set(mirrored(ends[i]!), smooth));
     return new Set(all.map(({ param }) => param));
   };
 }

@@ -2,7 +2,7 @@
 
 import type { App } from "./app";
 import { button, byId, h, onFile, s } from "./dom";
-import { asked, evaluate, Field, inUnits, MM, type Quantity } from "./fields";
+import { describeLimits, evaluate, Field, inUnits, MM, type Quantity } from "./fields";
 import { capital, isCaption, paramName, words } from "./names";
 import { bring } from "./opening";
 import type { Sketch } from "./sketch";
@@ -39,7 +39,7 @@ export class Settings {
   /** Asks for a line drawn on the canvas. */
   onDraw: (kind: Sketch, take: (value: string) => void) => void = () => {};
   /** Called when the settings of another step are shown. */
-  onOther: () => void = () => {};
+  onStepChange: () => void = () => {};
 
   constructor(private app: App) {
     app.listen(["steps", "state", "handles"], () => this.build());
@@ -55,7 +55,7 @@ export class Settings {
     const signature = [this.app.selected, step?.deformation, ...adjusts, ...circles].join();
     if (signature === this.builtFor && this.box.childElementCount > 0) return this.refresh();
     this.builtFor = signature;
-    this.onOther();
+    this.onStepChange();
     this.refreshers = [];
     if (!step || !deformation) return this.box.replaceChildren();
     const main = params.filter((p) => (isCaption(step) && p.kind !== "point") || isMain(p, step.args[p.name] !== undefined) || this.app.grip(p.name)?.adjust !== undefined);
@@ -145,7 +145,7 @@ export class Settings {
       const present = circle();
       return present ? app.setTyped(p.name, [arc([present[0], present[1], mm * unit, present[3], present[4]])]) : null;
     };
-    const field = new Field(input, () => hundredths((circle()?.[2] ?? 0) / unit).toString(), (text) => set(number(text)), (text) => (number(text) > 0 ? null : asked("mm", 0)));
+    const field = new Field(input, () => hundredths((circle()?.[2] ?? 0) / unit).toString(), (text) => set(number(text)), (text) => (number(text) > 0 ? null : describeLimits("mm", 0)));
     const note = h("p", { class: "wrong", role: "status" });
     const grow = button({ class: "link" }, () => void set(Number(grow.dataset.mm)));
     const warning = h("div", { hidden: true }, note, grow);
@@ -202,7 +202,7 @@ export class Settings {
       const q = evaluate(typed, unit());
       const units = p.kind === "length" ? /^(%|px|mm|cm|m|in|pt|pc|q|)$/ : usual === "%" ? /^%?$/ : usual === "°" ? /^°$/ : /^$/;
       const fits = q && units.test(q.unit) && (!isWhole || Number.isInteger(q.value));
-      return fits && q.value >= (least ?? -Infinity) && q.value <= (most ?? Infinity) ? null : asked(unit(), least, most, isWhole);
+      return fits && q.value >= (least ?? -Infinity) && q.value <= (most ?? Infinity) ? null : describeLimits(unit(), least, most, isWhole);
     };
     const take = (typed: string) => (typed.trim() === "" ? this.app.setTyped(p.name, []) : this.app.setTyped(p.name, [text(evaluate(typed, unit())!)]));
     const nudge = (typed: string, times: number): string | null => {
@@ -288,7 +288,7 @@ export class Settings {
     this.slide(slider, (value) => [p.name, values(value)], () => values(usual / size));
     const isWrong = (typed: string) => {
       const q = evaluate(typed || short(usual / size), sign);
-      return q && q.unit === sign && q.value >= least / size && q.value <= most / size ? null : asked(sign, hundredths(least / size), hundredths(most / size));
+      return q && q.unit === sign && q.value >= least / size && q.value <= most / size ? null : describeLimits(sign, hundredths(least / size), hundredths(most / size));
     };
     const take = (typed: string) => this.app.setTyped(p.name, values(evaluate(typed, sign)?.value ?? usual / size));
     const nudge = (typed: string, times: number) => {

@@ -6,7 +6,7 @@ import { ARROWS, byId, s } from "./dom";
 import { Drawing, parseWithPrefix } from "./drawing";
 import { cells } from "./heat";
 import { Modes } from "./modes";
-import { Selection, together } from "./selection";
+import { Selection, groupMover } from "./selection";
 import { nodesOf } from "./nodes";
 import { paramName } from "./names";
 import { toast } from "./toast";
@@ -86,7 +86,7 @@ export class Stage {
   isBefore = false;
   showsNodes = false;
   showsStretch = false;
-  showsEnd = false;
+  showsFinalResult = false;
   /** The deformation whose handles are highlighted. */
   private greeted = "";
   /** The time that the last faint result took, in ms. */
@@ -121,7 +121,7 @@ export class Stage {
     app.listen(["state"], () => this.takeState());
     app.listen(["handles"], () => this.rebuild());
     app.listen(["report"], () => this.showsStretch && void this.drawStretch());
-    app.listen(["report", "steps"], () => void this.drawEnd());
+    app.listen(["report", "steps"], () => void this.drawFinalResult());
     this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
     this.svg.addEventListener("keydown", (e) => this.key(e));
     this.svg.addEventListener("keyup", (e) => {
@@ -282,9 +282,9 @@ export class Stage {
   });
 
   /** Shows or hides the result of all steps behind the picture of fewer steps. */
-  readonly drawEnd = latest(async () => {
+  readonly drawFinalResult = latest(async () => {
     const { app } = this;
-    const isEarlier = () => this.showsEnd && app.selected < app.steps.length - 1;
+    const isEarlier = () => this.showsFinalResult && app.selected < app.steps.length - 1;
     const draft = app.isDragging ? END_TOLERANCE * this.camera.pixel : null;
     // During a drag, skip this in a large drawing.
     if (draft !== null && this.endTime > END_TIME_LIMIT) return;
@@ -329,14 +329,14 @@ export class Stage {
     this.selection.place(this.app.isDragging && this.app.cancelGesture ? null : handles, (p) => this.camera.toScreen(p));
   }
 
-  /** `true` if dragging the background selects points. */
-  get selects(): boolean {
+  /** `true` if dragging the background selects points, of which there must be several. */
+  get isSelecting(): boolean {
     return this.modes.selects && (this.app.handles?.handles.length ?? 0) > 1;
   }
 
   private rebuild(): void {
     const { handles } = this.app;
-    this.svg.classList.toggle("selecting", this.selects);
+    this.svg.classList.toggle("selecting", this.isSelecting);
     this.knobOf.clear();
     const lines = handles?.lines() ?? [];
     this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
@@ -404,7 +404,7 @@ export class Stage {
   /** Returns the selected points if a handle is one of several. */
   selectedWith(handle: Handle): Handle[] | null {
     const { handles } = this.app;
-    return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.of(handles) : null;
+    return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.selectedOf(handles) : null;
   }
 
   /** Returns the keys of the points in a frame between two points of the screen: nodes, or else control points. */
@@ -431,8 +431,8 @@ export class Stage {
     return [e.clientX - box.left, e.clientY - box.top];
   }
 
-  /** Lets the next click pick a path among those that a selector matches; `request`, if any, is shown until then. */
-  pick(take: typeof this.onPick, selector = ".art [id]", request = ""): void {
+  /** Lets the next click pick a path among those that `selector` matches; `request`, if any, is shown until then. */
+  pick(take: typeof this.onPick, request = "", selector = ".art [id]"): void {
     [this.onPick, this.pickSelector] = [take, selector];
     this.svg.classList.toggle("picking", take !== null || this.modes.picksParts);
     this.svg.classList.toggle("outlining", take !== null && selector !== ".art [id]");
@@ -561,7 +561,7 @@ export class Stage {
       };
       if (several) {
         this.app.commitSoon();
-        this.writeParams(together(this.app.handles, several, this.modes)(shifted), performance.now());
+        this.writeParams(groupMover(this.app.handles, several, this.modes)(shifted), performance.now());
       } else {
         this.moveTo(handle, shifted(handle.get()));
       }

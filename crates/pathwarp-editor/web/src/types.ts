@@ -67,17 +67,18 @@ export interface Deformation {
   params: Param[];
   /** Alternative starts, each by one parameter. */
   variants: { label: string; param: string }[];
+  /** A set of presets: the parameters that choose one, its bend and its axis. */
   gallery: { title: string; presets: string; bend: string | null; axis: string | null } | null;
 }
 
-/** Each segment has two coordinates for a line, and six for a cubic. */
 export interface Subpath {
   start: XY;
+  /** For each segment the points after its start: x, y of a line's end, or three points of a cubic. */
   segments: number[][];
   closed: boolean;
 }
 
-/** Control points with their indices as typed, and the lines that connect them. */
+/** Control points, `names` with their indices as typed, and the lines that connect them, lists of indices into `points`. */
 export interface Net {
   names: string[];
   points: XY[];
@@ -100,6 +101,7 @@ export interface Adjust {
   value?: number;
 }
 
+/** The handles of a parameter; its kind determines which field is set. A pair leads from the artwork to where it goes. */
 export interface Grip {
   adjust?: Adjust[];
   point?: XY;
@@ -130,17 +132,17 @@ export interface State {
   savedTo: string | null;
   /** The folder of the saved result, if it is not the drawing's. */
   savedIn: string | null;
-  target: string;
+  target: string; // The file that *Save* writes by default.
   /** The command that continues with the steps. */
   again: string;
   /** The program that waits for the steps, if any. */
   program: string | null;
-  restored: boolean;
-  problem: string | null;
+  restored: boolean; // `true` if the steps are unsaved ones of an earlier session.
+  problem: string | null; // The reason why the draft of unsaved steps could not be stored.
   /** The coefficients of the map from user units to px of the drawing, as in SVG's `matrix`. */
   toPx: [number, number, number, number, number, number];
   page: Frame;
-  missing: string[];
+  missing: string[]; // Sentences about fonts and images that were not found.
   /** The words that the drawing was set from, if any. */
   words: Words | null;
   /** `true` if the drawing consists of a photograph, with one px for each pixel. */
@@ -155,6 +157,7 @@ export interface Words {
   spacing: number;
 }
 
+/** `error` and `tolerance` are in user units; folds have the shape's id and a point of the drawing. */
 export interface Summary {
   segmentsIn: number;
   segmentsOut: number;
@@ -163,6 +166,7 @@ export interface Summary {
   folds: [string, XY][];
 }
 
+/** The SVG, or what differs from the last one: the line of the element, the attribute's name and its value. */
 export type Picture = { whole: string } | { changes: [number, string, string][] };
 
 export interface Answer {
@@ -172,7 +176,7 @@ export interface Answer {
   grips?: StepGrips[];
   /** The indices of steps for parts that the drawing lacks. */
   gone?: number[];
-  guides?: string[];
+  guides?: string[]; // Path data of cages and other lines that no parameter defines.
   warnings?: string[];
   /** Characters that no font has. */
   lacking?: string[];
@@ -185,26 +189,27 @@ export interface Answer {
   step?: Step;
   /** The largest distance by which a new net moves points, in user units. */
   moved?: number;
-  at?: XY | null;
-  text?: string;
-  /** The stored background, with its content as base64. */
+  at?: XY | null; // The point that the last step maps to the requested one, if there is one.
+  text?: string; // The command line.
+  /** The stored background, with its content as base64 and its position in `lie`, a `Placement`. */
   background?: { name: string; type: string; bytes: string; lie: { x: number; y: number; width: number; turn: number }; opacity: string } | null;
-  written?: string;
-  exists?: string;
+  written?: string; // The name of the file written.
+  exists?: string; // The name of an existing file that was not replaced.
   /** The reason why nothing could be written. */
   unwritable?: string;
   /** The content of a file as base64. */
   bytes?: string;
-  copied?: boolean;
+  copied?: boolean; // `true` if the file was written beside the drawing; `false` if it was there.
   presets?: string[];
   parts?: Part[];
   families?: string[];
   steps?: Step[];
   stretch?: Stretch | null;
-  event?: string;
-  done?: boolean;
+  event?: string; // `changed` in a message that answers nothing: another page has changed the steps.
+  done?: boolean; // `true` once the waiting program has the steps.
 }
 
+/** `source` is a point in the artwork before the step. */
 export type Shape = "node" | "control" | "source";
 
 export interface Handle {

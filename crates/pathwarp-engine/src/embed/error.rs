@@ -10,13 +10,13 @@ use pathwarp::{Error as LibraryError, GeometryError};
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The kind of an error, which tells who can mend it.
+/// The kind of an error: the caller, the input, the geometry, a limit or the library is at fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
     /// A name or value that the caller gave is wrong.
     Usage,
-    /// A file or drawing cannot be read.
+    /// A file or drawing cannot be read, or a result cannot be written.
     Input,
     /// The geometry does not allow the deformation.
     Geometry,
@@ -74,7 +74,7 @@ impl Error {
     }
 
     /// Adds the parameter or option concerned, and its value.
-    pub(super) fn about(mut self, parameter: &str, value: &str) -> Self {
+    pub(super) fn with_parameter(mut self, parameter: &str, value: &str) -> Self {
         self.details.parameter.get_or_insert_with(|| parameter.to_owned());
         self.details.value.get_or_insert_with(|| value.to_owned());
         self

@@ -163,7 +163,9 @@ impl Warper {
         for (param, value) in values {
             let (param, value) = (param.as_ref(), value.as_ref());
             let Some(declared) = info.params.iter().find(|p| p.name == param) else {
-                return Err(Error::usage(format!("{name}: {}", unknown(info.params, param))).about(param, value));
+                return Err(
+                    Error::usage(format!("{name}: {}", unknown(info.params, param))).with_parameter(param, value)
+                );
             };
             if declared.kind == Kind::Save {
                 return Err(Error::usage(format!("{param} writes a file, which only the program does")));
@@ -189,7 +191,7 @@ impl Warper {
     /// # Errors
     /// [`Usage`](super::ErrorKind::Usage) if the option is unknown or only for the program, or if the value is wrong.
     pub fn set_option(&mut self, name: &str, value: &str) -> Result<(), Error> {
-        let about = |e: Error| e.about(name, value);
+        let about = |e: Error| e.with_parameter(name, value);
         check_option(name).map_err(|e| about(Error::usage(e)))?;
         let mut given = self.given.clone();
         given.set(name, value).map_err(|e| about(Error::usage(e)))?;
@@ -254,8 +256,8 @@ impl Warper {
         guarded(&self.registry, || recipe_file::write(&self.registry, &self.typed, &self.given, folder))
     }
 
-    /// Builds the recipe for points. `bounds` returns their box, to which percentages refer unless the option `frame` is given. Later steps
-    /// of a chain, and inverses, examine artwork in that box: [`hatching`](crate::input::hatching), unless there is a drawing.
+    /// Builds the recipe for points. `bounds` returns their box, to which percentages refer unless the option `frame` is given. `artwork`
+    /// returns what later steps of a chain, and inverses, examine in it: without a drawing, [`hatching`](crate::input::hatching).
     ///
     /// # Errors
     /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if no map results.
@@ -352,7 +354,7 @@ impl Warper {
     }
 
     /// Bends an outline, using a share of the tolerance.
-    fn bend(&self, outline: &Outline, share: f64) -> Result<Path, Error> {
+    fn bend(&self, outline: &Outline, share_of_tolerance: f64) -> Result<Path, Error> {
         guarded(&self.registry, || {
             if let Some(other) = self.given.names().find(|name| !PATH_OPTIONS.contains(name)) {
                 let known = PATH_OPTIONS.join(", ");
@@ -361,18 +363,20 @@ impl Warper {
             let options = self.options()?;
             let bounds = outline.bounding_box();
             let frame = plain_frame(&options, || bounds)?;
-            let tolerance = share * options.tolerance_for(bounds, &frame)?;
+            let tolerance = share_of_tolerance * options.tolerance_for(bounds, &frame)?;
             let budget = Arc::new(Budget::new(options.reading.limits));
             let (edits, steps) = edits::divided(&self.resolved)?;
             if edits.len() + usize::from(!steps.steps.is_empty()) > 1 {
                 return Err(Failure::usage("a path is edited or bent; do one after the other"));
             }
-            let edit = edits.first().map(|e| planned(e, &options, (bounds, &frame), true)).transpose()?;
-            let tolerance = edit.as_ref().map_or(tolerance, |planned| share * planned.tolerance);
+            let is_last = steps.steps.is_empty();
+            let edit = edits.first().map(|e| planned(e, &options, (bounds, &frame), is_last)).transpose()?;
+            let tolerance = edit.as_ref().map_or(tolerance, |planned| share_of_tolerance * planned.tolerance);
             let built = self.build(&options, &frame, outline, &budget)?;
             let refit = refit::Options::new(tolerance).with_certify(options.certify).with_nodes(options.nodes);
+            // Small contours get smaller tolerances than the default one.
             let refit = refit.with_suited(edit.as_ref().map_or(options.tolerance.is_none(), |planned| planned.suited));
-            let copies = &built.placement.copies;
+            let (copies, filled) = (&built.placement.copies, true);
             let repeated = if copies.is_empty() { outline.clone() } else { outline.repeated(copies) };
             let (refit, decimals) = (refit.with_budget(budget), options.precision);
             let path = match edit.map(|planned| planned.edit) {
@@ -383,7 +387,7 @@ impl Warper {
             check_maps(&built)?;
             let path = path.map_err(pathwarp::Error::from)?;
             let survey = Survey::new(&built.map, repeated.bounding_box(), repeated.segs().count());
-            let orientation = survey.orientation_of_copies(outline, copies, true);
+            let orientation = survey.orientation_of_copies(outline, copies, filled);
             let folds = Fold::of(&orientation, &orientation).count;
             check_maps(&built)?;
             let warnings = built.steps.into_iter().flat_map(|s| s.explanation.warnings).collect();
@@ -427,8 +431,8 @@ impl Warper {
         budget: &Arc<Budget>,
     ) -> Result<BuiltRecipe, Failure> {
         let session = Session { registry: &self.registry, recipe: &self.resolved, options, given: &self.given };
-        let (frame, budget) = (frame.clone(), Arc::clone(budget));
-        let ready = session.ready(&mut PlainArtwork { outlines: vec![outline], frame, budget }, None)?;
+        let (frame, budget, framed) = (frame.clone(), Arc::clone(budget), None);
+        let ready = session.ready(&mut PlainArtwork { outlines: vec![outline], frame, budget }, framed)?;
         Ok(ready.built.whole)
     }
 }

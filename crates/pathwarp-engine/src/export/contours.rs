@@ -31,14 +31,15 @@ impl Cells {
     }
 
     /// Returns the items in the cell of a point and in the eight around it; these include all within `near`.
-    fn around(&self, p: Point) -> impl Iterator<Item = usize> {
+    fn candidates_near(&self, p: Point) -> impl Iterator<Item = usize> {
         let [x, y] = [p.x, p.y].map(|v| (v / self.near).floor() as i64);
         let keys = (-1..=1).flat_map(move |dx| (-1..=1).map(move |dy| [x.saturating_add(dx), y.saturating_add(dy)]));
         keys.filter_map(|key| self.cells.get(&key)).flatten().copied()
     }
 }
 
-/// Returns, for each closed contour, the first earlier one equal to it within `near`, if any. Their shapes must agree in `kind`.
+/// Returns, for each closed contour, the first earlier one equal to it within `near`, if any. `kind` tells for the index of a shape
+/// what the machine does with it, such as its layer and colour; only contours of one kind are equal.
 pub(super) fn equal_earlier<K: PartialEq>(
     all: &[Contour],
     kind: impl Fn(usize) -> K,
@@ -51,7 +52,7 @@ pub(super) fn equal_earlier<K: PartialEq>(
     for (i, c) in all.iter().enumerate().filter(|(_, c)| c.path.closed) {
         let corners = |r: Rect| [r.origin(), Point::new(r.x1, r.y1)];
         let [low, high] = corners(c.path.bounding_box());
-        for earlier in corners_seen.around(low) {
+        for earlier in corners_seen.candidates_near(low) {
             let [p, q] = corners(all[earlier].path.bounding_box());
             if kind(all[earlier].shape) == kind(c.shape)
                 && [p - low, q - high].iter().all(|by| by.x.abs().max(by.y.abs()) <= near)
@@ -68,7 +69,7 @@ pub(super) fn equal_earlier<K: PartialEq>(
     Ok(out)
 }
 
-/// Removes segments of open lines that repeat earlier lines or parts of contours within `near`. Returns their number.
+/// Removes segments of open lines that repeat earlier lines or contours of their shape's `kind` within `near`. Returns their number.
 pub(super) fn leave_out_lines<K: PartialEq>(all: &mut Vec<Contour>, kind: impl Fn(usize) -> K, near: f64) -> usize {
     /// A segment is indexed by its point at the first parameter; a reversed one has that point at the second.
     const INDEXED: [f64; 2] = [0.25, 0.75];
@@ -88,7 +89,7 @@ pub(super) fn leave_out_lines<K: PartialEq>(all: &mut Vec<Contour>, kind: impl F
         let mut runs: Vec<Vec<Seg>> = vec![Vec::new()];
         for s in c.path.segs {
             let repeats = |i: usize| kind(segs[i].0) == kind(c.shape) && are_equal(&segs[i].1, &s, near);
-            if INDEXED.iter().flat_map(|t| seen.around(s.eval(*t))).any(repeats) {
+            if INDEXED.iter().flat_map(|t| seen.candidates_near(s.eval(*t))).any(repeats) {
                 left_out += 1;
                 runs.push(Vec::new());
             } else {
@@ -116,8 +117,8 @@ type End = (usize, bool);
 /// The end that each end is joined to.
 type Links = HashMap<End, End>;
 
-/// Joins open lines whose ends meet within `near`. Several ends at one point are joined in pairs: first those of one `kind`, in drawing
-/// order. If their number is odd, they stay apart.
+/// Joins open lines whose ends meet within `near`. Several ends at one point are joined in pairs: first those of shapes of one `kind`, in
+/// drawing order. If their number is odd, they stay apart.
 pub(super) fn chained<K: Eq + Hash>(all: &[Contour], kind: impl Fn(usize) -> K, near: f64) -> Vec<Contour> {
     let mut links = Links::new();
     for ends in meetings(all, near) {
@@ -136,7 +137,7 @@ pub(super) fn chained<K: Eq + Hash>(all: &[Contour], kind: impl Fn(usize) -> K, 
     chains(all, &links).into_iter().map(|c| c.contour).collect()
 }
 
-/// Joins open lines to contours that they may be meant as: ends up to some millimetres apart are joined, and gaps closed by lines.
+/// Closes open lines that may be meant as contours: ends up to `REACH` apart are joined, and what is still open is closed by a line.
 pub(super) fn closed_roughly(open: &[Contour], near: f64) -> Vec<Chain> {
     /// Ends farther apart than this, in mm, are not meant to meet.
     const REACH: f64 = 2.0;
@@ -161,7 +162,7 @@ fn meetings(all: &[Contour], near: f64) -> impl Iterator<Item = Vec<End>> {
     let (mut cells, mut points): (_, Vec<(Point, Vec<End>)>) = (Cells::new(near), Vec::new());
     for (i, c) in all.iter().enumerate().filter(|(_, c)| !c.path.closed && !c.path.segs.is_empty()) {
         for (end, p) in [((i, false), c.path.start), ((i, true), c.path.end())] {
-            let known = cells.around(p).find(|i| points[*i].0.distance(p) <= near);
+            let known = cells.candidates_near(p).find(|i| points[*i].0.distance(p) <= near);
             let known = known.unwrap_or_else(|| {
                 cells.add(p, points.len());
                 points.push((p, Vec::new()));
@@ -173,7 +174,8 @@ fn meetings(all: &[Contour], near: f64) -> impl Iterator<Item = Vec<End>> {
     points.into_iter().map(|(_, ends)| ends)
 }
 
-/// Links ends that meet in pairs, unless (without `even_if_odd`) an odd number of different lines meets. Returns the ends of a lone line.
+/// Links ends that meet in pairs, unless (without `even_if_odd`) an odd number of different lines meets. A line of one segment is not
+/// linked to itself. Returns the ends of a lone line.
 fn link_in_pairs(all: &[Contour], ends: Vec<End>, near: f64, even_if_odd: bool, links: &mut Links) -> Vec<End> {
     /// Ends at one point, above which the lines are not meant as contours.
     const MOST_ENDS: usize = 100;

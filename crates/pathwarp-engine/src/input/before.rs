@@ -232,7 +232,7 @@ impl Edits {
 
 impl Original {
     /// Removes the ids from a result that the edits have added.
-    pub(super) fn without_ids(&self, svg: &str) -> String {
+    pub(super) fn without_added_ids(&self, svg: &str) -> String {
         let known: HashSet<&str> = ids(self.document.text()).map(|(_, id)| id).collect();
         let (mut out, mut done) = (String::with_capacity(svg.len()), 0);
         for (start, id) in ids(svg).filter(|(_, id)| is_position(id) && !known.contains(id)) {

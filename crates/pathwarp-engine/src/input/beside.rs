@@ -145,7 +145,8 @@ pub(super) fn surface_files(
             } else {
                 artwork::outlines(&wanted, &place, options.refit.tolerance, doc.budget())
             };
-            let text = text.map_err(|e| Failure::Geometry(format!("--{}: {}", file.param, advice::surface(&e))))?;
+            let text =
+                text.map_err(|e| Failure::Geometry(format!("--{}: {}", file.param, advice::surface_message(&e))))?;
             out.push((PathBuf::from(&file.name), text));
         }
     }

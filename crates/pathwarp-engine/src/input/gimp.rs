@@ -33,8 +33,8 @@ pub(super) fn open(
     Ok(Some(SvgArtwork::of_paths(GimpPaths::new(file, options)?, format, options)?))
 }
 
-/// Returns the path called `name`, or the only one, of a file; `None` if the file is not GIMP's.
-pub fn outline(file: &Path, name: Option<&str>, limits: &Limits) -> Result<Option<Outline>, Error> {
+/// Returns the path called `name`, or the only one, of a file, in pixels; `None` if the file is not GIMP's.
+pub fn gimp_outline(file: &Path, name: Option<&str>, limits: &Limits) -> Result<Option<Outline>, Error> {
     let Some(file) = GimpFile::read(file, false, limits)? else { return Ok(None) };
     Ok(Some(name.map_or_else(|| file.only_path(), |name| file.path_named(name))?.outline()))
 }

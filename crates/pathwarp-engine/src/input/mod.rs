@@ -18,7 +18,7 @@ pub use files::{
     bytes, described, display, document, document_of, no_document, not_a_drawing, read_data_file, read_options,
     split_reference, unreadable,
 };
-pub use gimp::{file_name, outline, svg_name};
+pub use gimp::{file_name, gimp_outline, svg_name};
 pub use gimp_file::GimpFile;
 pub(crate) use proportions::Proportions;
 pub use svg::SvgArtwork;

@@ -47,7 +47,7 @@ const SAME_SCALE: f64 = 1e-3;
 /// Resolution of bitmaps in a draft, in pixels per inch.
 const DRAFT_DPI: f64 = 24.0;
 
-/// Tolerance of the edge of what is hidden, as a share of the result's.
+/// Tolerance of the edge of the part that a view in space hides behind other parts, as a share of the result's tolerance.
 const HIDDEN: f64 = 0.2;
 
 /// An SVG drawing. Its plane is root user space.
@@ -151,17 +151,17 @@ impl SvgArtwork {
     }
 
     /// Returns the result in its format, without looking for folds.
-    pub fn written(&self, request: &WarpRequest<'_>) -> Result<export::Exported, Failure> {
+    pub fn result(&self, request: &WarpRequest<'_>) -> Result<export::Exported, Failure> {
         let (_, warped, tolerance) = self.warp_for(request)?;
-        self.exported(warped.svg, request.options, tolerance)
+        self.export(warped.svg, request.options, tolerance)
     }
 
-    fn exported(&self, svg: String, options: &CommonOptions, tolerance: f64) -> Result<export::Exported, Failure> {
+    fn export(&self, svg: String, options: &CommonOptions, tolerance: f64) -> Result<export::Exported, Failure> {
         export::drawing(svg, (self.format, &self.destination), &self.read, options, Some(tolerance))
     }
 
     /// Changes the format and the destination of the result.
-    pub fn send(&mut self, format: Format, destination: Destination) {
+    pub fn set_output(&mut self, format: Format, destination: Destination) {
         (self.format, self.destination) = (format, destination);
     }
 
@@ -193,7 +193,7 @@ impl SvgArtwork {
             warped.svg = self.transformed(&warped.svg, back, options)?;
         }
         if let Some(original) = &self.original {
-            warped.svg = original.without_ids(&warped.svg);
+            warped.svg = original.without_added_ids(&warped.svg);
         }
         Ok((options, warped))
     }
@@ -272,7 +272,7 @@ impl SvgArtwork {
             .with_filters(filters)
             .with_painter(Some(Painter::new(Arc::clone(&bender))))
             .with_patterns(options.patterns)
-            .with_page(if self.stays(request).is_some() { PageFit::None } else { options.page })
+            .with_page(if self.reason_to_stay(request).is_some() { PageFit::None } else { options.page })
             .with_same_view(request.same_view)
             .with_grown(self.original.as_ref().and_then(|o| o.grown))
             .with_clones(options.clones)
@@ -307,11 +307,11 @@ impl SvgArtwork {
     }
 
     /// Returns the reason why the page stays although it could grow.
-    fn stays(&self, request: &WarpRequest<'_>) -> Option<&'static str> {
+    fn reason_to_stay(&self, request: &WarpRequest<'_>) -> Option<&'static str> {
         if request.options.page != PageFit::Auto {
             return None;
         }
-        page::stays(&self.doc, request.options, request.recipe)
+        page::reason_to_stay(&self.doc, request.options, request.recipe)
     }
 
     /// Returns the orientation of every shape of a part under the map.
@@ -371,6 +371,7 @@ impl SvgArtwork {
         options: &WarpOptions,
         warped: &WarpedDocument,
     ) -> Result<(HashMap<&str, Fold>, Vec<String>), Error> {
+        // What would overlap in a view in space lies behind other parts, and is cut away.
         if options.hidden.is_some() {
             return Ok((HashMap::new(), Vec::new()));
         }
@@ -384,6 +385,7 @@ impl SvgArtwork {
         }
         let pictures = self.picture_orientations(part, built, options)?;
         all = pictures.iter().fold(all, |all, (_, o)| all.and(o));
+        // Folds count against the orientation of most of the artwork, or against the unturned one if the corners of its box keep that.
         all = self.bounding_box(Which::Part(part)).map_or(all, |bounds| all.usual(&built.map, bounds));
         let (mut out, mut warnings) = (HashMap::new(), Vec::new());
         let placement = &built.placement;
@@ -436,7 +438,8 @@ impl SvgArtwork {
     }
 }
 
-/// Returns options for a drawing that is bent and not rendered: pictures are decoded only where they are bent.
+/// Returns options for a drawing that is bent and not rendered: JPEG pictures get the size at which they show in their header, and are
+/// decoded only where they are bent.
 fn bending(read: &ReadOptions) -> ReadOptions {
     read.clone().with_turned(Some(Picture::sized))
 }
@@ -580,7 +583,7 @@ fn unmeasured(doc: &Document, request: &WarpRequest<'_>) -> Option<String> {
     let length = lengths.find(|v| UNITS.iter().any(|unit| v.to_lowercase().ends_with(unit)))?;
     let has_size = doc.is_measured() || request.options.page_width.or(request.options.page_height).is_some();
     let advice = "--page-width gives the page its size";
-    (!has_size).then(|| format!("the page has no unit: {length} is taken as 96 px an inch have it; {advice}"))
+    (!has_size).then(|| format!("the page has no unit: {length} is taken at 96 px per inch; {advice}"))
 }
 
 /// Warns of gradients that became pictures.
@@ -609,7 +612,7 @@ impl FileArtwork for SvgArtwork {
             _ => {}
         }
         let (options, mut warped, tolerance) = self.warp_for(request)?;
-        let page = PageNews::take(&mut warped, common.page, self.stays(request));
+        let page = PageNews::take(&mut warped, common.page, self.reason_to_stay(request));
         let (mut shapes, folds) = self.shape_reports(&built.parts, &options, &warped)?;
         let mut warnings: Vec<String> = warped.warnings.iter().map(ToString::to_string).collect();
         warnings.extend(self.original.iter().flat_map(|o| &o.warnings).cloned());
@@ -645,7 +648,7 @@ impl FileArtwork for SvgArtwork {
                 paths.written(&warped.svg, guides, (self.format, common, tolerance), &mut shapes)?
             }
             None => {
-                let result = self.exported(warped.svg, common, tolerance)?;
+                let result = self.export(warped.svg, common, tolerance)?;
                 (WarpedResult::Bytes(result.bytes), (result.warnings, result.kerf))
             }
         };

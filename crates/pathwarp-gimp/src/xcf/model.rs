@@ -37,7 +37,6 @@ impl Xcf {
 
 /// A property that holds paths.
 pub(crate) struct PathBlock {
-    pub(crate) property: u32,
     /// From the type word to the end of the content.
     pub(crate) span: Range<u64>,
 }

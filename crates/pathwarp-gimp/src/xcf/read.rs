@@ -65,7 +65,7 @@ fn properties(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
             _ => input.skip(length, &format!("property {kind}"))?,
         }
         if matches!(kind, PROP_PATHS | PROP_VECTORS) {
-            xcf.blocks.push(PathBlock { property: kind, span: at..input.offset() });
+            xcf.blocks.push(PathBlock { span: at..input.offset() });
         }
     }
     Err(Error::damaged(input.offset(), format!("more than {MAX_PROPERTIES} properties: the list has no end")))

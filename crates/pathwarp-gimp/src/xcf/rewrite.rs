@@ -4,9 +4,7 @@ use crate::error::{Error, ErrorKind};
 use crate::old_strokes;
 use crate::path::{GimpPath, Stroke};
 use crate::source::{ByteSource, ReadSeek};
-use crate::xcf::model::{
-    MAGIC, PATH_ITEMS, PROP_END, PROP_PATHS, PROP_VECTORS, PathBlock, PathLayout, PathRecord, Xcf,
-};
+use crate::xcf::model::{MAGIC, PATH_ITEMS, PROP_END, PROP_VECTORS, PathBlock, PathLayout, Xcf};
 use crate::xcf::primitives::push_words;
 use crate::xcf::{old_paths, read::read, vectors};
 use pathwarp::budget::Limits;
@@ -112,13 +110,10 @@ fn growth(edits: &[ByteEdit], offset: u64) -> i64 {
 
 /// Adds edits for the length words of changed properties.
 fn update_lengths(xcf: &Xcf, edits: &mut Vec<ByteEdit>) {
-    for PathBlock { span, property } in &xcf.blocks {
+    for PathBlock { span } in &xcf.blocks {
         let grown = growth(edits, span.end) - growth(edits, span.start);
-        let changed = xcf.records.iter().any(|PathRecord { span: r, .. }| {
-            r.start >= span.start && r.end <= span.end && edits.iter().any(|e| r.contains(&e.span.start))
-        });
         // The length word of `PROP_PATHS` may have been wrong before; correct it only if the block changes its size.
-        if grown != 0 || (changed && *property != PROP_PATHS) {
+        if grown != 0 {
             // A block does not shrink below its head of eight bytes.
             let content = (span.end - span.start) as i64 - 8 + grown;
             let bytes = word(content as usize);
@@ -221,8 +216,8 @@ fn pointers(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
         visited: HashSet::new(),
         input,
     };
-    walk.table(Some(PointerTarget::Layer))?;
-    walk.table(Some(PointerTarget::Channel))?;
+    walk.read_table(Some(PointerTarget::Layer))?;
+    walk.read_table(Some(PointerTarget::Channel))?;
     while let Some((at, target)) = walk.pending.pop() {
         if !walk.visited.insert(at) {
             continue;
@@ -242,15 +237,15 @@ fn pointers(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
             }
             PointerTarget::Hierarchy => {
                 walk.input.skip(12, "a hierarchy")?;
-                // GIMP reads only the first level. In files with 64-bit pointers, the others are empty, and their table ends with
-                // a 32-bit word.
+                // GIMP reads only the first level. In files with 64-bit pointers, the others have no tiles, and are not visited: a
+                // zero of 32 bits ends their lists of tiles.
                 if walk.pointer(Some(PointerTarget::Level))? {
-                    walk.table((!walk.wide).then_some(PointerTarget::Level))?;
+                    walk.read_table((!walk.wide).then_some(PointerTarget::Level))?;
                 }
             }
             PointerTarget::Level => {
                 walk.input.skip(8, "a level")?;
-                walk.table(None)?;
+                walk.read_table(None)?;
             }
         }
     }
@@ -258,8 +253,8 @@ fn pointers(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
 }
 
 impl PointerWalk<'_, '_> {
-    fn table(&mut self, to: Option<PointerTarget>) -> Result<(), Error> {
-        while self.pointer(to)? {}
+    fn read_table(&mut self, target: Option<PointerTarget>) -> Result<(), Error> {
+        while self.pointer(target)? {}
         Ok(())
     }
 

@@ -18,13 +18,13 @@ const INTEROPERABILITY_DIRECTORY: u16 = 0xa005;
 const SHORT: u16 = 3;
 const LONG: u16 = 4;
 /// Bytes of a value of each type; types are numbered from 1.
-const SIZES: [usize; 13] = [1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4];
+const TYPE_SIZES: [usize; 13] = [1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4];
 
 /// Bytes of an entry: tag (2), type (2), count (4), and the value or its offset (4).
 const ENTRY: usize = 12;
 /// Precedes the TIFF file in a JPEG, and sometimes in other formats.
 const PREFIX: &[u8] = b"Exif\0\0";
-/// Largest number of bytes that a segment of a JPEG holds beside the prefix.
+/// Most bytes of a TIFF file in a JPEG: 65,535 of a segment, less its length (2) and the prefix (6).
 const MAX_BYTES: usize = 65_527;
 
 /// A TIFF file.
@@ -103,9 +103,9 @@ impl Tiff {
     }
 
     /// The bytes of the values that do not fit into the entries of a directory.
-    fn values(&self, directory: usize) -> impl Iterator<Item = Range<usize>> {
+    fn value_ranges(&self, directory: usize) -> impl Iterator<Item = Range<usize>> {
         self.entries(directory).filter_map(|e| {
-            let size = SIZES.get(usize::from(e.kind).checked_sub(1)?)?;
+            let size = TYPE_SIZES.get(usize::from(e.kind).checked_sub(1)?)?;
             let length = size.checked_mul(usize::try_from(e.count).ok()?)?;
             let start = self.offset(e.start + 8)?;
             let end = start.checked_add(length)?;
@@ -142,7 +142,7 @@ impl Tiff {
 
     /// Keeps only the header, these directories and their values; anything else becomes zeros, or is cut off at the end.
     fn keep_only(&mut self, directories: &[usize]) {
-        let ranges = |d: &usize| self.extent(*d).into_iter().chain(self.values(*d)).collect::<Vec<_>>();
+        let ranges = |d: &usize| self.extent(*d).into_iter().chain(self.value_ranges(*d)).collect::<Vec<_>>();
         let mut kept: Vec<Range<usize>> = std::iter::once(0..8).chain(directories.iter().flat_map(ranges)).collect();
         kept.sort_by_key(|r| r.start);
         let mut end = 0;

@@ -95,6 +95,7 @@ fn interpolated(source: &PyramidLevel<'_>, x: f64, y: f64) -> Channels {
 pub(super) struct Footprint {
     /// Direction of the longest axis.
     axis: [f64; 2],
+    /// Lengths of the longest and the shortest axis, in pixels of the source per pixel of the result.
     pub(super) longest: f64,
     shortest: f64,
 }
@@ -102,7 +103,7 @@ pub(super) struct Footprint {
 /// The integers from `from` to `to`, as a range within 0..`size`. Uses conversions, since rounding is a function call on some
 /// processors.
 #[inline]
-fn range(from: f64, to: f64, size: usize) -> (usize, usize) {
+fn integers_between(from: f64, to: f64, size: usize) -> (usize, usize) {
     // Conversions map negative numbers to zero.
     let first = from as usize;
     let first = if (first as f64) < from { first.saturating_add(1) } else { first };
@@ -157,10 +158,10 @@ impl Footprint {
         let (x, y) = (x * scale - 0.5, y * scale - 0.5);
         let (wide, high) = (2.0 * (sx.abs() + s.abs()), 2.0 * (s.abs() + sy.abs()));
         let (mut sum, mut total) = ([0.0; 4], 0.0);
-        let (top, bottom) = range(y - high, y + high, level.height);
+        let (top, bottom) = integers_between(y - high, y + high, level.height);
         if i.abs() * (wide + high) < 1e-3 {
             // The footprint lies along rows and columns, so the weights of columns are equal in every row.
-            let (left, right) = range(x - wide, x + wide, level.width);
+            let (left, right) = integers_between(x - wide, x + wide, level.width);
             let mut columns = [0.0; COLUMNS];
             let count = right.saturating_sub(left).min(COLUMNS);
             for (k, w) in columns[..count].iter_mut().enumerate() {
@@ -182,8 +183,8 @@ impl Footprint {
             for row in top..bottom {
                 let dy = row as f64 - y;
                 // The kernel is nonzero for |S⁻¹·d| < 2 in both coordinates.
-                let ([a0, a1], [b0, b1]) = (strip(ix, i * dy), strip(i, iy * dy));
-                let (left, right) = range(x + a0.max(b0), x + a1.min(b1), level.width);
+                let ([a0, a1], [b0, b1]) = (interval_within_kernel(ix, i * dy), interval_within_kernel(i, iy * dy));
+                let (left, right) = integers_between(x + a0.max(b0), x + a1.min(b1), level.width);
                 if left >= right {
                     continue;
                 }
@@ -207,9 +208,9 @@ impl Footprint {
 /// Maximum width of an upright footprint: twice the radius of the cubic, which is two, times the largest stretch of a level.
 const COLUMNS: usize = (4.0 * 2.0 * MIN_SHRINK * MAX_ASPECT) as usize + 2;
 
-/// Solves |slope·d + rest| < 2 for d.
+/// The interval of d in which |slope·d + rest| < 2, the radius of the kernel.
 #[inline]
-fn strip(slope: f64, rest: f64) -> [f64; 2] {
+fn interval_within_kernel(slope: f64, rest: f64) -> [f64; 2] {
     if slope.abs() < 1e-12 {
         return if rest.abs() < 2.0 { [f64::NEG_INFINITY, f64::INFINITY] } else { [1.0, -1.0] };
     }
@@ -217,8 +218,7 @@ fn strip(slope: f64, rest: f64) -> [f64; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Weights of the eight pixels around the middle of a pair, from the inside out: the cubic of [`super::sample`], stretched by two,
-/// at (k + ½)/2.
+/// Weights of the eight pixels around the middle of a pair, from the inside out: half of [`cubic`] at (k + ½)/2, for k from 0.
 const HALVING: [f32; 4] = [0.433_593_75, 0.113_281_25, -0.035_156_25, -0.011_718_75];
 
 /// A picture of the pyramid.
@@ -317,7 +317,7 @@ pub(super) fn add(sum: &mut Channels, pixel: Channels, weight: f32) {
 
 #[cfg(test)]
 mod tests {
-    use super::range;
+    use super::integers_between;
 
     #[test]
     fn ranges_hold_the_whole_numbers_between() {
@@ -328,7 +328,7 @@ mod tests {
             [f64::NEG_INFINITY, -3.5, -1.0, -0.2, -0.0, 0.0, 0.3, 1.0, 6.5, 7.0, 9.9, 1e300, f64::INFINITY, f64::NAN];
         for from in bounds {
             for to in bounds {
-                assert_eq!(range(from, to, 8), rounded(from, to, 8), "{from} {to}");
+                assert_eq!(integers_between(from, to, 8), rounded(from, to, 8), "{from} {to}");
             }
         }
     }

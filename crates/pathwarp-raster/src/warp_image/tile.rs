@@ -89,8 +89,8 @@ impl PixelArea {
     }
 }
 
-/// Prepares `inverse`, a cache, for the traces of `areas` and of their parts, one size after the other. Calls `announce_pixels` with the
-/// pixels of the smallest parts that cannot be traced.
+/// Prepares `inverse`, a cache, for the traces of `areas` and of their parts, one size after the other; traces need no jets. Calls
+/// `announce_pixels` with the pixels of the smallest parts that cannot be traced.
 pub(super) fn announce(
     mut areas: Vec<PixelArea>,
     basis: &ChebyshevBasis,
@@ -115,7 +115,6 @@ const MAX_BLOCK: usize = 160;
 /// Sample points along a side of a tile for finding its part of the source.
 const PER_SIDE: usize = 5;
 
-/// The bytes of a bitmap.
 #[derive(Clone, Copy)]
 pub(super) struct BitmapBytes<'a> {
     pub(super) data: &'a [u8],
@@ -190,7 +189,7 @@ impl SourceBlock {
     /// all in the block.
     #[inline(always)]
     pub(super) fn firsts(&self, left: &[f32; TILE], top: &[f32; TILE], side: usize, layout: ChannelOrder) -> Firsts {
-        // At this magnitude the last bit has the value 1, so the low bits hold the integer that was added.
+        // A whole number (as `left` and `top` are) that is added to this one is found in the low bits of the float.
         const WHOLE: f32 = (1_u32 << 23) as f32;
         let [max_left, max_top] = self.size.map(|n| n as f32 - side as f32);
         let stride = (self.size[0] * BYTES) as u32;

@@ -1,6 +1,6 @@
 //! Rational patches and NURBS surfaces as JSON, with trimming curves, and NURBS curves in space. `docs/solid.md` describes the format.
 //!
-//! A curve is a surface of degree p × 1 whose two rows of control points are equal. So is its image, whose rows are written once.
+//! In memory, a curve is a surface of degree p × 1 with two equal rows of control points, one of which is written. Maps keep them equal.
 
 use super::surface::{self, Surface, TrimCurve};
 use crate::mesh::MeshError;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct Document {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     surfaces: Vec<Entry>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -43,12 +43,12 @@ struct Entry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weights: Option<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    trims: Vec<Vec<Curve>>,
+    trims: Vec<Vec<Trim>>,
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Curve {
+struct Trim {
     degree: usize,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     knots: Option<Vec<f64>>,
@@ -62,14 +62,14 @@ struct Curve {
 /// # Errors
 /// [`MeshFault::Text`](crate::mesh::MeshFault::Text), with the position in the text or the surface, when the text is damaged.
 pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
-    let file: File =
+    let file: Document =
         serde_json::from_slice(text).map_err(|e| MeshError::whole(format!("is not a file of surfaces: {e}")))?;
     let ones = |given: Option<Vec<f64>>, n: usize| given.unwrap_or_else(|| vec![1.0; n]);
     // Degrees are checked below, but must not overflow here.
-    let default_knots = |degree: usize| surface::single(degree.min(usize::from(u8::MAX)));
+    let default_knots = |degree: usize| surface::single_span_knots(degree.min(usize::from(u8::MAX)));
     let mut out = Vec::with_capacity(file.surfaces.len());
     for (n, entry) in file.surfaces.into_iter().enumerate() {
-        let curve = |c: Curve| TrimCurve {
+        let curve = |c: Trim| TrimCurve {
             degree: c.degree,
             knots: c.knots.unwrap_or_else(|| default_knots(c.degree)),
             weights: ones(c.weights, c.points.len()),
@@ -92,7 +92,7 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
         let surface = Surface {
             name: c.name,
             degree: [c.degree, 1],
-            knots: [c.knots.unwrap_or_else(|| default_knots(c.degree)), surface::single(1)],
+            knots: [c.knots.unwrap_or_else(|| default_knots(c.degree)), surface::single_span_knots(1)],
             weights: ones(c.weights, c.points.len()).repeat(2),
             points: c.points.repeat(2).into_iter().map(DVec3::from_array).collect(),
             trims: Vec::new(),
@@ -114,8 +114,8 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
 /// A message when a number cannot be written as JSON.
 pub fn write(surfaces: &[Surface]) -> Result<String, String> {
     let weights = |w: &[f64]| w.iter().any(|w| *w != 1.0).then(|| w.to_vec());
-    let knots = |degree: usize, k: &Vec<f64>| (*k != surface::single(degree)).then(|| k.clone());
-    let curve = |c: &TrimCurve| Curve {
+    let knots = |degree: usize, k: &Vec<f64>| (*k != surface::single_span_knots(degree)).then(|| k.clone());
+    let curve = |c: &TrimCurve| Trim {
         degree: c.degree,
         knots: knots(c.degree, &c.knots),
         points: c.points.clone(),
@@ -124,7 +124,7 @@ pub fn write(surfaces: &[Surface]) -> Result<String, String> {
     let entry = |s: &Surface| Entry {
         name: s.name.clone(),
         degree: s.degree,
-        knots: (s.knots != s.degree.map(surface::single)).then(|| s.knots.clone()),
+        knots: (s.knots != s.degree.map(surface::single_span_knots)).then(|| s.knots.clone()),
         points: s.points.iter().map(DVec3::to_array).collect(),
         weights: weights(&s.weights),
         trims: s.trims.iter().map(|l| l.iter().map(curve).collect()).collect(),
@@ -140,7 +140,7 @@ pub fn write(surfaces: &[Surface]) -> Result<String, String> {
         }
     };
     let (curves, surfaces): (Vec<&Surface>, Vec<&Surface>) = surfaces.iter().partition(|s| s.is_curve());
-    let file = File {
+    let file = Document {
         surfaces: surfaces.into_iter().map(entry).collect(),
         curves: curves.into_iter().map(space_curve).collect(),
     };

@@ -44,7 +44,7 @@ pub(super) fn section(points: &[DVec4], from: f64, to: f64) -> Vec<DVec4> {
     (0..=n).map(polar).collect()
 }
 
-/// A map as it acts on one patch: where a side of the patch lies in a crease, the branch on the patch's side applies.
+/// A map as it acts on one patch: a step with a crease that the patch at most touches is replaced by its branch on the patch's side.
 pub(super) struct LocalMap {
     pub(super) map: Chain3,
     /// `true` if no crease crosses or touches the patch, as far as its bounding box shows.
@@ -54,13 +54,13 @@ pub(super) struct LocalMap {
 impl LocalMap {
     pub(super) fn new(patch: &BezierPatch, map: &Chain3) -> Self {
         let mut out = Self { map: Chain3::default(), is_smooth: true };
-        let mut on = patch.bounds();
+        let mut bounds = patch.bounds();
         for step in map.steps() {
-            let branch = on.and_then(|on| step.branch(&on));
+            let branch = bounds.and_then(|b| step.branch(&b));
             out.is_smooth &= branch.is_some() || !has_kinks(&**step);
             let local = branch.unwrap_or_else(|| Arc::clone(step));
             // The box of the image is only known for collineations.
-            on = on.zip(local.collineation()).and_then(|(on, c)| image_box(&on, c));
+            bounds = bounds.zip(local.collineation()).and_then(|(b, c)| image_box(&b, c));
             out.map.push(local);
         }
         out
@@ -74,9 +74,9 @@ fn has_kinks(map: &dyn Map3) -> bool {
 }
 
 /// Returns the bounding box of a box's image, if the box is all in front of the vanishing plane.
-fn image_box(on: &Box3, map: &Collineation) -> Option<Box3> {
-    let is_in_front = on.corners().iter().all(|p| map.homogeneous(*p).w > 0.0);
-    if is_in_front { Box3::around(on.corners().map(|p| map.point(p))) } else { None }
+fn image_box(bounds: &Box3, map: &Collineation) -> Option<Box3> {
+    let is_in_front = bounds.corners().iter().all(|p| map.homogeneous(*p).w > 0.0);
+    if is_in_front { Box3::around(bounds.corners().map(|p| map.point(p))) } else { None }
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@ impl Surface {
     #[must_use]
     pub fn bezier(name: &str, degree: [usize; 2], points: Vec<DVec3>) -> Self {
         let weights = vec![1.0; points.len()];
-        let knots = degree.map(single);
+        let knots = degree.map(single_span_knots);
         Self { name: name.to_owned(), degree, knots, points, weights, trims: Vec::new() }
     }
 
@@ -294,7 +294,7 @@ impl Scaled {
 }
 
 /// Returns the knots of a single Bézier span over 0..1.
-pub(super) fn single(degree: usize) -> Vec<f64> {
+pub(super) fn single_span_knots(degree: usize) -> Vec<f64> {
     bezier_knots(degree, &[0.0, 1.0])
 }
 

@@ -14,7 +14,7 @@ type Curve = Vec<DVec4>;
 
 /// Distance from a side within which parameters count as on it, and area up to which loops are omitted.
 const ROUNDING: f64 = 1e-12;
-/// Parts of a curve between which crossings of a layer's sides are searched for.
+/// Number of equal parts of a curve; a crossing of a layer's side is searched for in each.
 const STEPS: usize = 48;
 /// Limit on halvings of a curve to fit it.
 const MAX_HALVINGS: usize = 8;
@@ -45,7 +45,6 @@ impl Trims {
         self.0.is_empty()
     }
 
-    /// Returns the number of curves.
     pub(super) fn count(&self) -> usize {
         self.0.iter().map(Vec::len).sum()
     }
@@ -64,28 +63,27 @@ impl Trims {
         Self(self.0.iter().map(clip_all).collect()).reduced()
     }
 
-    /// Returns the loops with u and v exchanged.
     pub(super) fn transposed(&self) -> Self {
         let swap = |c: &Curve| c.iter().map(|p| DVec4::new(p.y, p.x, 0.0, p.w)).collect();
         Self(self.0.iter().map(|l| l.iter().map(swap).collect()).collect())
     }
 
-    /// Returns the loops of a layer between two graphs, as cubics within a tolerance, or `None` if all of the layer belongs to the surface.
-    /// In the coordinates of the layer, the graphs are t = 0 and t = 1.
+    /// Returns the loops of a layer, the part above the curve `layer` − 1 of `graphs` (or v = 0) and below the curve `layer` (or v = 1), as
+    /// cubics within a tolerance, or `None` if all of the layer belongs to the surface. Its coordinates are s = u and t from 0 to 1.
     pub(super) fn layer(&self, graphs: &Graphs<'_>, layer: usize, tolerance: f64) -> Option<Self> {
         let to_layer = |p: [f64; 2]| {
-            let [low, high] = graphs.sides(layer, p[0]).map(|side| side[0]);
-            // Where the sides meet, a point is below both or above both.
+            let [low, high] = graphs.sides(layer, p[0]).map(|[height, _slope]| height);
+            // Where the sides meet, t is huge, so that a point counts as below both or above both.
             [p[0], (p[1] - low) / (high - low).max(ROUNDING)]
         };
         let follow_all = |curves: &Vec<Curve>| {
-            let mut layer = InLayer { tolerance, ..InLayer::default() };
-            layer.beyond = curves.last().and_then(|c| side_of(to_layer(point(c, 1.0 - ON_SIDE))[1]));
+            let mut follower = LayerFollower { tolerance, ..LayerFollower::default() };
+            follower.beyond = curves.last().and_then(|c| side_of(to_layer(point(c, 1.0 - ON_SIDE))[1])); // The end may lie on a side.
             for curve in curves {
                 let point_at = |t: f64| to_layer(point(curve, t));
-                spans(&point_at).into_iter().for_each(|span| layer.follow(&point_at, span));
+                spans(&point_at).into_iter().for_each(|span| follower.follow(&point_at, span));
             }
-            layer.kept.closed()
+            follower.kept.closed()
         };
         Self(self.0.iter().map(follow_all).collect()).reduced()
     }
@@ -94,7 +92,7 @@ impl Trims {
     pub(super) fn curves(&self) -> Vec<Vec<TrimCurve>> {
         let curve = |c: &Curve| TrimCurve {
             degree: c.len() - 1,
-            knots: surface::single(c.len() - 1),
+            knots: surface::single_span_knots(c.len() - 1),
             points: c.iter().map(|p| [p.x / p.w, p.y / p.w]).collect(),
             weights: c.iter().map(|p| p.w).collect(),
         };
@@ -199,16 +197,16 @@ impl Kept {
 /// Where the sides of the layer meet, all heights t are one point, and the loop may pass all of them at once. In the coordinates of the
 /// layer, it then runs along a line across the layer.
 #[derive(Default)]
-struct InLayer {
+struct LayerFollower {
     kept: Kept,
     /// The side beyond which the loop is, as returned by [`side_of`].
     beyond: Option<bool>,
-    /// The point that the loop has reached.
+    /// The point that the loop has reached, once a curve is kept. Before that no line leads to a side; [`Kept::closed`] joins the ends.
     last: [f64; 2],
     tolerance: f64,
 }
 
-impl InLayer {
+impl LayerFollower {
     /// Follows a curve between two of its parameters, where it is all inside the layer or all beyond one side.
     fn follow(&mut self, curve: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2]) {
         let height = |side: bool| f64::from(u8::from(side));
@@ -364,7 +362,7 @@ mod tests {
         (0..4)
             .map(|k| TrimCurve {
                 degree: 2,
-                knots: surface::single(2),
+                knots: surface::single_span_knots(2),
                 points: (0..3).map(|i| corner(2 * k + i)).map(|[x, y]| [u + r * x, v + r * y]).collect(),
                 weights: vec![1.0, 0.5f64.sqrt(), 1.0],
             })

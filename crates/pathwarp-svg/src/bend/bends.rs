@@ -92,7 +92,7 @@ impl<'a> Bends<'a> {
 
     /// For every part of the drawing, the index of its bend. Clip paths and masks follow the elements that refer to them.
     pub(crate) fn part_bends(&self, drawing: &Drawing) -> Vec<Option<usize>> {
-        let (scene, far) = (drawing.scene(), drawing.far());
+        let (scene, far) = (drawing.scene(), drawing.out_of_range());
         let mut out: Vec<Option<usize>> = scene.parts.iter().map(|p| self.bend_of(p.element())).collect();
         let mut fill = |parts: &Range<usize>, bend: Option<usize>, referrers: &[Referrer]| {
             out[parts.clone()].fill(bend.or_else(|| self.bend_of_referrers(referrers)));

@@ -1,4 +1,4 @@
-//! Bends a whole drawing: all parts, in parallel, with slots and bitmaps.
+//! Bends a whole drawing: its parts, in parallel, its bitmaps, and the affine fits of its slots, the groups that move as a whole.
 
 use super::bends::{Bend, Bends};
 use super::fits::{self, EmbeddedImage, FilterOutcome, PlacedSlot, frame_in_result};
@@ -37,9 +37,10 @@ pub(crate) struct BentDrawing {
     pub(crate) slots: Vec<PlacedSlot>,
     /// For each part, the index of its bend.
     pub(crate) part_bends: Vec<Option<usize>>,
-    /// Results for filters, by the index of their slot.
+    /// Results for filters, by the index of their slot. The document adds them after [`bend`].
     pub(crate) filters: BTreeMap<usize, FilterOutcome>,
     pub(crate) united: United,
+    /// The line around the visible artwork, if one is wanted.
     pub(crate) line: Option<Line>,
 }
 
@@ -63,7 +64,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
                 if let Some(why) = &warped.unpainted {
                     out.warnings.push(Warning::FittedGradient { id: id.clone(), why: why.to_string() });
                 }
-                if let Some(error) = warped.stroke_error.filter(|_| warped.stroke_refused) {
+                if let Some(error) = warped.stroke_error.filter(|_| warped.stroke_off_domain) {
                     out.warnings.push(Warning::SingleWidth { id: id.clone(), error });
                 }
                 let element = part.element();
@@ -86,7 +87,8 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
             }
         });
     }
-    out.skipped.extend(drawing.far().reasons.iter().map(|(id, why)| Skipped { id: id.clone(), why: why.clone() }));
+    out.skipped
+        .extend(drawing.out_of_range().reasons.iter().map(|(id, why)| Skipped { id: id.clone(), why: why.clone() }));
     warn(drawing, bends, &part_bends, &outcomes, &slots, out);
     united.report(drawing, &reports, out);
     let line = line::draw(drawing, bends, &part_bends, out)?;
@@ -101,7 +103,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
     Ok(BentDrawing { outcomes, images, slots, part_bends, filters: BTreeMap::new(), united, line })
 }
 
-/// Warps every part by the bend whose index `part_bends` has; `None` for parts that are not bent.
+/// Warps every part by the bend whose index `part_bends` gives; `None` for parts that are not bent.
 fn warp_parts(
     drawing: &Drawing,
     bends: &Bends<'_>,
@@ -115,9 +117,9 @@ fn warp_parts(
     let pieces: Vec<_> = bends.each.iter().map(|b| task::placed_letters(drawing, &b.options)).collect();
     let shared = bends.each.iter().zip(&pieces).enumerate();
     let shared = shared.map(|(k, (b, pieces))| with_shared_edges(drawing, b, (part_bends, k), pieces));
-    let (bends_of, contours): (Vec<Bend<'_>>, Vec<_>) = shared.unzip();
+    let (bends_of, contour_tolerances): (Vec<Bend<'_>>, Vec<_>) = shared.unzip();
     let known: Vec<_> = bends_of.iter().enumerate().map(|(k, b)| known_shapes(drawing, b, part_bends, k)).collect();
-    let gradients = if bends.options.paints_gradients() { parts.iter().map(count_gradients).sum() } else { 0 };
+    let gradient_count = if bends.options.paints_gradients() { parts.iter().map(count_gradients).sum() } else { 0 };
     let hairline = drawing.millimetre().map_or(0.0, |mm| HAIRLINE * mm);
     let warp = |i: usize| {
         let k = part_bends[i].filter(|&k| !bends_of[k].is_identity())?;
@@ -129,14 +131,16 @@ fn warp_parts(
         }
         let gathered = map.prefers_batches().then(|| Gathered::new(*map));
         let map = gathered.as_ref().map_or(*map, |g| g as &dyn Map);
-        let context = PartContext { map, options, known: &known[k], drawing, to_px: scene.to_px, gradients, hairline };
-        let write = frame_in_result(scene, slots, p.slot, p.frame);
-        (is_invertible(p.frame) && is_invertible(write)).then(|| {
+        let context =
+            PartContext { map, options, known: &known[k], drawing, to_px: scene.to_px, gradient_count, hairline };
+        let frame_to_write = frame_in_result(scene, slots, p.slot, p.frame);
+        (is_invertible(p.frame) && is_invertible(frame_to_write)).then(|| {
             let outline = match union {
                 Some(union) => (union.clone(), &[][..]),
-                None => (shapes[i].outline.clone(), &contours[k][i][..]),
+                None => (shapes[i].outline.clone(), &contour_tolerances[k][i][..]),
             };
-            part::warp(&PartTask::new(p, outline, write, &context, &pieces[k][i]).without_hidden()?)
+            // In a view of a surface in space, a part may lie behind others.
+            part::warp(&PartTask::new(p, outline, frame_to_write, &context, &pieces[k][i]).without_hidden()?)
         })
     };
     let copies = bends_of.iter().map(|b| b.options.copies.len()).max().unwrap_or_default();
@@ -166,12 +170,14 @@ fn with_shared_edges<'a>(
     let contours = task::contour_tolerances(drawing, &bend, part_bends, k);
     let refit = &bend.options.refit;
     let simplifies = matches!(bend.options.edit, Some(Edit::Simplify { .. }));
+    // Merged nodes, and small contours with tolerances of their own (`suited`), would differ on both sides of an edge.
     if (refit.nodes.merges() || refit.suited || simplifies) && !bend.is_identity() {
         let outline =
             |i: usize| task::placed_outline(&drawing.shapes()[i].outline, &contours[i], &bend.options, &pieces[i]);
         let placed: Vec<_> = (0..part_bends.len()).filter(|&i| part_bends[i] == Some(k)).map(outline).collect();
         let all = placed.iter().map(|(o, contours)| (&**o, &contours[..]));
         if simplifies {
+            // Simplifying replaces whole chains of segments, which must end where other borders meet them.
             let borders = pathwarp::engine::Borders::among(&all.collect::<Vec<_>>(), refit.tolerance);
             bend.options.refit.borders = Arc::new(borders);
         } else {
@@ -192,7 +198,7 @@ fn known_shapes(drawing: &Drawing, bend: &Bend<'_>, part_bends: &[Option<usize>]
     if bend.is_identity() {
         return KnownShapes::default();
     }
-    // Most parts have less than the whole tolerance, because they are rounded.
+    // In most parts, rounding of the written coordinates uses this share of the tolerance.
     let refit = &bend.options.refit;
     let finer = refit.clone().with_tolerance((1.0 - ROUNDING) * refit.tolerance).with_suited(false);
     KnownShapes::among(outlines_of(drawing, part_bends, k), bend.map, &finer)

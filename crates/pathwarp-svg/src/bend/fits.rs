@@ -73,8 +73,8 @@ pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Opt
     affine.is_finite().then_some(PaintFit { affine, residual: if size > 0.0 { miss / size } else { 0.0 }, miss })
 }
 
-/// Finds the fit of a shape with copies: the paint of one copy is stretched over the box of all. If no affine map comes near
-/// the image of that box, as around a ring, the paint is stretched over the box of the image, `result`.
+/// Finds the fit of a shape that `copies` move in root user space: the paint of one is stretched over the box of all. If no affine map
+/// comes near the image of that box, as around a ring, the paint is stretched over the box of the image, `result`.
 pub(crate) fn fit_copies(
     area: Rect,
     read: Affine,
@@ -119,10 +119,10 @@ fn grid(r: Rect) -> impl Iterator<Item = Point> {
     (0..=N).flat_map(move |i| (0..=N).map(move |j| Point::new(r.x0 + r.width() * at(i), r.y0 + r.height() * at(j))))
 }
 
-/// A slot under a map.
+/// A slot, which moves as a whole, under a map.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlacedSlot {
-    /// The affine fit, applied to the slot's transform.
+    /// The affine fit, in the slot's coordinates.
     pub(crate) fit: Affine,
     /// Leads from the slot's coordinates to root user space in the result.
     write: Affine,
@@ -215,7 +215,7 @@ pub(crate) enum EmbeddedImage {
     /// Bent, in the user space outside its placing transform.
     Bent {
         image: BentImage,
-        /// Path data of the outline that clips the image, which may extend beyond it.
+        /// Path data of the outline that clips the image, if it extends beyond, as a JPEG has no transparency.
         clip: Option<String>,
     },
 }
@@ -282,6 +282,7 @@ pub(crate) fn with_tiles(drawing: &Drawing, bends: &Bends<'_>) -> Result<Option<
     let needed = |painted: Painted, area: Rect, frame: Affine| {
         let bend = match painted {
             Painted::Element(e) => bends.bend_of(e),
+            // Without a division, the first bend stands for all.
             Painted::Mask(bend) => bend.or(Some(0)),
         };
         bend.and_then(|k| bends.each.get(k)).is_some_and(|bend| lays_out(bend, area, frame))

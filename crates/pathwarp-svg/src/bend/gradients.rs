@@ -20,7 +20,7 @@ const VISIBLE: f64 = 1.5 / 255.0;
 const NOTICEABLE: f64 = 8.0 / 255.0;
 /// Fraction of the shape on which a difference must be noticeable to count. Edges between hard stops that shift a little cover less.
 const NOTICEABLE_SHARE: f64 = 0.01;
-/// Bound on the ratio of an affine fit's largest error over a shape to its largest error at the samples.
+/// An affine fit's largest error over a shape is at most this many times its largest error at the samples.
 const SAMPLING_FACTOR: f64 = 1.25;
 
 /// A gradient that an affine fit would show wrong.
@@ -141,7 +141,7 @@ impl PaintedGradient {
             target: target.bounding_box(),
             shape: target,
             to_px: t.context.to_px,
-            among: t.context.gradients,
+            among: t.context.gradient_count,
             seen: &self.seen,
             strict: self.strict,
             sharp: self.sharp,

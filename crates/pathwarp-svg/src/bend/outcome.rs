@@ -186,7 +186,7 @@ pub(crate) struct WarpedPart {
     /// Largest distance between a scaled stroke and the exact one, in root user units.
     pub(super) stroke_error: Option<f64>,
     /// `true` if the stroke is scaled because the map is not defined around it.
-    pub(super) stroke_refused: bool,
+    pub(super) stroke_off_domain: bool,
     /// Fit to be applied to gradients and patterns; `None` if they are unchanged.
     pub(crate) fit: Option<PaintFit>,
     /// Gradients that replace the ones of fill and stroke, where the fit would look wrong.

@@ -49,7 +49,7 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         data,
         stroke: stroke.outcome,
         stroke_error: stroke.error.map(|e| e + stroke.leverage * (error + t.rounding)),
-        stroke_refused: stroke.refused,
+        stroke_off_domain: stroke.off_domain,
         fit,
         fill_gradient,
         stroke_gradient,

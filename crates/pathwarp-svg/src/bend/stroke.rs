@@ -41,12 +41,12 @@ pub(super) struct BentStroke {
     /// Factor by which the path's error adds to `error`.
     pub(super) leverage: f64,
     /// `true` if the stroke should be outlined, but the map is not defined around it.
-    pub(super) refused: bool,
+    pub(super) off_domain: bool,
 }
 
 impl BentStroke {
     fn scaled(scale: f64, error: Option<f64>) -> Self {
-        Self { outcome: StrokeOutcome::Scaled(scale), report: None, error, leverage: 1.0, refused: false }
+        Self { outcome: StrokeOutcome::Scaled(scale), report: None, error, leverage: 1.0, off_domain: false }
     }
 
     /// A scaled stroke of known width; `pieces` is the number of segments of the path.
@@ -118,7 +118,7 @@ pub(super) fn stroke(
         Ok((path, report)) => Ok(BentStroke::outlined(path, Some(report))),
         // The outline may leave the map's domain; scale the width instead.
         Err(e) if mode == Strokes::Auto && !matches!(e, GeometryError::Limit(_)) => {
-            Ok(BentStroke { refused: true, ..mean() })
+            Ok(BentStroke { off_domain: true, ..mean() })
         }
         Err(e) => Err(e),
     }

@@ -30,8 +30,8 @@ pub(super) struct PartContext<'a> {
     pub(super) drawing: &'a Drawing,
     /// Root user space to px.
     pub(super) to_px: Affine,
-    /// Number of gradients in the drawing that may become pictures.
-    pub(super) gradients: usize,
+    /// Number of gradients in the drawing that may become pictures, which share a budget of pixels.
+    pub(super) gradient_count: usize,
     /// Largest width of a hairline, in root user units; 0 if the page is not measured in physical units.
     pub(super) hairline: f64,
 }
@@ -39,7 +39,7 @@ pub(super) struct PartContext<'a> {
 /// The image of an outline in the part's user space as written.
 pub(super) struct BentPath {
     pub(super) path: BezPath,
-    /// The path data of the image if it is already written, because it has arcs, which `path` approximates, or spans.
+    /// The path data of the image if it is already written, because it has arcs, which `path` approximates, or several spans.
     pub(super) data: Option<String>,
     pub(super) report: PathReport,
 }
@@ -129,12 +129,15 @@ impl<'a> PartTask<'a> {
         self.bend_contours(outline, contours, false)
     }
 
-    /// Bends an outline without seams. If its contours were closed by seams and are rings now, lines may become arcs.
+    /// Bends an outline whose segments the map does not bring together in seams. If it had seams, its contours are rings now (`are_rings`),
+    /// and lines may become arcs.
     fn bend_contours(&self, outline: &Outline, contours: &[f64], are_rings: bool) -> Result<BentPath, GeometryError> {
+        // Runs of segments, each with its tolerance: an edge shared with a finer contour takes the finer one.
         let spans = self.options().refit.shared.spans(outline, contours);
         let options = self.refit(self.allowed()).with_spans(self.digits.remaining_for_spans(&spans));
         if let Some(edit) = self.options().edit {
             let tolerances: Vec<f64> = (0..contours.len()).map(|i| self.allowed_of(i)).collect();
+            // Without a result, the edit only refits the outline, as below.
             if let Some(RefittedPath { path, report, .. }) =
                 edit.for_part(self.part).apply(outline, &self.refit(self.allowed()), &tolerances)?
             {

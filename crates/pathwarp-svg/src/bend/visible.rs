@@ -25,11 +25,11 @@ pub(super) struct Visible<'a> {
 /// The content of a group that counts towards its area.
 #[derive(Clone, Copy, PartialEq)]
 enum Counted {
-    /// Everything painted.
+    /// Everything painted. Tiles lie within the shape that they paint, which counts.
     Paint,
     /// All areas, whatever their paint, as in clip paths.
     Clip,
-    /// Everything painted that is not black, as in luminance masks.
+    /// Everything painted that is not black, as in luminance masks. Pictures count as bright.
     Light,
 }
 
@@ -134,7 +134,7 @@ impl Visible<'_> {
 
     /// The area in which a picture is more than half opaque.
     fn picture_area(&self, i: usize) -> Result<Area, GeometryError> {
-        /// Distance in pixels within which the edge of a picture is uncertain.
+        /// Tolerance, in pixels, of the traced edge of a picture.
         const EDGE_UNCERTAINTY: f64 = 0.2;
         let b = &self.drawing.scene().bitmaps[i];
         let Some(corners) = picture_corners(b) else { return Ok(Area::default()) };

@@ -68,7 +68,8 @@ fn group_box(
     g.children.iter().filter_map(child_box).reduce(|a, b| a.union(b))
 }
 
-/// Distance by which a part's stroke extends from its path, in root user units: half its width.
+/// Distance by which a part's stroke extends from its path, in root user units: half its width. In tiles, the path is
+/// the stroke's outline already.
 pub(crate) fn stroke_extent(p: &Part, to_px: Affine) -> f64 {
     let frame = if p.fixed_width { to_px.inverse() } else { p.frame };
     p.stroke.as_ref().filter(|_| !p.in_tile).map_or(0.0, |s| 0.5 * f64::from(s.width().get()) * stretch(frame))
@@ -144,7 +145,7 @@ const PER_ROUND_SEGMENT: f64 = 3.0 * 4.0;
 /// Work of measuring a dash, in expanded segments.
 const PER_MEASURED_DASH: f64 = 2.0;
 
-/// Fraction of the tolerance for gaps between sides that are closed without a join.
+/// Sides closer than this fraction of the tolerance get no join, which adds up to half of the gap to the error.
 const GAP: f64 = 0.3;
 
 /// Expands the stroke of `local` to a filled outline in the same user space, within `tolerance` there.
@@ -268,7 +269,7 @@ pub(crate) fn filter_box(filter: &Filter, region: Rect, content: Rect) -> Option
 
 /// A bound on the area that a primitive paints, given the boxes of its inputs.
 fn primitive_box(kind: &Kind, input: &dyn Fn(&Input) -> Option<Rect>, region: Rect) -> Option<Rect> {
-    let either = |a: Option<Rect>, b: Option<Rect>| a.into_iter().chain(b).reduce(|a, b| a.union(b));
+    let union = |a: Option<Rect>, b: Option<Rect>| a.into_iter().chain(b).reduce(|a, b| a.union(b));
     let grown = |b: Rect, x: f32, y: f32| b.inflate(f64::from(x), f64::from(y));
     let blurred = |b: Rect, x: f32, y: f32| b.inflate(BLUR_REACH * f64::from(x), BLUR_REACH * f64::from(y));
     match kind {
@@ -278,7 +279,7 @@ fn primitive_box(kind: &Kind, input: &dyn Fn(&Input) -> Option<Rect>, region: Re
             i.union(shadow + Vec2::new(s.dx().into(), s.dy().into()))
         }),
         Kind::Offset(o) => input(o.input()).map(|i| i + Vec2::new(o.dx().into(), o.dy().into())),
-        Kind::Blend(b) => either(input(b.input1()), input(b.input2())),
+        Kind::Blend(b) => union(input(b.input1()), input(b.input2())),
         Kind::Composite(c) => match c.operator() {
             CompositeOperator::In => input(c.input1()).and_then(|a| overlap(a, input(c.input2())?)),
             CompositeOperator::Out => input(c.input1()),
@@ -287,7 +288,7 @@ fn primitive_box(kind: &Kind, input: &dyn Fn(&Input) -> Option<Rect>, region: Re
             CompositeOperator::Over
             | CompositeOperator::Xor
             | CompositeOperator::Lighter
-            | CompositeOperator::Arithmetic { .. } => either(input(c.input1()), input(c.input2())),
+            | CompositeOperator::Arithmetic { .. } => union(input(c.input1()), input(c.input2())),
         },
         Kind::Merge(m) => m.inputs().iter().filter_map(input).reduce(|a, b| a.union(b)),
         Kind::Morphology(m) => input(m.input()).map(|i| match m.operator() {

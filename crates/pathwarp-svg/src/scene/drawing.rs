@@ -248,13 +248,13 @@ impl Drawing {
     pub(crate) fn selected_parts(&self, selection: &Selection) -> Vec<bool> {
         let elements = selection.resolve(&self.source);
         let all = selection.is_everything();
-        let far = self.far();
+        let far = self.out_of_range();
         let is_selected = |p: &Part| p.element().map_or(all, |e| elements[e]);
         self.scene().parts.iter().enumerate().map(|(i, p)| is_selected(p) && !far.holds(i)).collect()
     }
 
     /// The parts whose coordinates are out of range.
-    pub(crate) fn far(&self) -> &Far {
+    pub(crate) fn out_of_range(&self) -> &Far {
         if let Some(far) = self.far.get() {
             return far;
         }

@@ -205,7 +205,8 @@ pub(crate) struct Slot {
     pub(crate) frame: Affine,
     /// Area to fit, in the slot's coordinates.
     pub(crate) area: Rect,
-    /// `true` if the written transform is fit · transform, `false` if it is transform · fit.
+    /// `true` if the written transform is fit · transform, so that the slot's coordinates are not those of the group's filters; else it is
+    /// transform · fit.
     pub(crate) fits_outside: bool,
     /// The element whose `transform` takes the fit.
     pub(crate) element: Option<ElementId>,

@@ -68,7 +68,7 @@ impl Lettering {
         !self.lines.is_empty() && self.lines.iter().all(|l| l.is_level)
     }
 
-    /// Returns `true` if the selected artwork consists of lettering only.
+    /// Returns `true` if the selected artwork consists of lettering only, and the drawing has no bitmaps.
     #[must_use]
     pub fn is_all(&self) -> bool {
         self.is_all
@@ -140,7 +140,7 @@ pub(crate) fn lettering(drawing: &Drawing, selection: &Selection) -> Lettering {
     Lettering { lines, letters, is_all }
 }
 
-/// The lines, with the letters whose parts are all painted and selected.
+/// The lines that keep a letter, each with only the letters whose parts are all painted and selected.
 fn selected_lines(drawing: &Drawing, selected: &[bool]) -> Vec<TextLine> {
     let shapes = drawing.shapes();
     let is_whole = |l: &&PlacedLetter| l.subpaths.iter().all(|(i, _)| selected[*i] && shapes[*i].painted);
@@ -199,6 +199,7 @@ pub(crate) fn objects(drawing: &Drawing, selection: &Selection) -> Vec<PlacedLet
     apart.sort_by(|a, b| a.0.x0.total_cmp(&b.0.x0));
     let object = |(b, parts, element): (Rect, Vec<usize>, ElementId)| PlacedLetter {
         name: source.display_name(element),
+        // Objects have no baseline, and form one line.
         origin: (b.x0, 0.0).into(),
         advance: b.width(),
         subpaths: parts.into_iter().map(|i| (i, 0..shapes[i].outline.subpaths.len())).collect(),
@@ -206,11 +207,11 @@ pub(crate) fn objects(drawing: &Drawing, selection: &Selection) -> Vec<PlacedLet
     apart.into_iter().map(object).collect()
 }
 
-/// For every part, its letters or, if `objects` is `true`, the objects that it belongs to.
-pub(crate) fn letters_by_part(drawing: &Drawing, selection: &Selection, objects: bool) -> Vec<Vec<LetterSubpaths>> {
+/// For every part, its letters or, if `of_objects` is `true`, the objects that it belongs to.
+pub(crate) fn letters_by_part(drawing: &Drawing, selection: &Selection, of_objects: bool) -> Vec<Vec<LetterSubpaths>> {
     let mut out = vec![Vec::new(); drawing.scene().parts.len()];
-    let letters: Vec<PlacedLetter> = if objects {
-        self::objects(drawing, selection)
+    let letters: Vec<PlacedLetter> = if of_objects {
+        objects(drawing, selection)
     } else {
         let lines = selected_lines(drawing, &drawing.selected_parts(selection));
         lines.into_iter().flat_map(|l| l.letters).collect()

@@ -1,4 +1,4 @@
-//! Bounds the size of a drawing before usvg resolves it, including all that references, style sheets and text add to it.
+//! Bounds the size of a drawing, whose style sheets are resolved, before usvg expands it by what references and text add to it.
 
 use super::elements::{first_by_id, is_shape};
 use memchr::{memchr2, memmem};
@@ -160,13 +160,13 @@ impl Size {
         cost::ELEMENT * elements as f64 + cost::SEGMENT * segments as f64 + cost::LETTER * letters as f64
     }
 
-    /// Compares with the limits, regardless of the work done so far.
+    /// Compares with the limits, regardless of the work done so far. As bending takes work, too, an error about work says “at least”.
     fn check(self, budget: &Budget) -> Result<(), Exceeded> {
         budget.check(Limit::Elements, self.elements as f64)?;
         budget.check(Limit::Work, self.work()).map_err(Exceeded::cut_short)
     }
 
-    /// Charges for it.
+    /// Charges for it. Drawings in images are charged to the same budget.
     fn spend(self, budget: &Budget) -> Result<(), Exceeded> {
         budget.take(Limit::Elements, self.elements as f64)?;
         budget.spend(self.work())
@@ -237,14 +237,14 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         // The body being counted, after the ones that show it.
         let mut open = vec![(root, first)];
         self.known.insert(root, None);
-        let (mut last, mut first_over) = ((Size::default(), 0), None);
+        let (mut finished, mut first_over) = ((Size::default(), 0), None);
         while let Some((body, content)) = open.last_mut() {
             if let Some(next) = content.shown.pop() {
-                let (other, times, around) = next;
+                let (other, times, outer_depth) = next;
                 match self.known.get(&other) {
                     Some(Some((size, depth))) => {
                         content.size = content.size.plus_times(*size, times);
-                        content.depth = content.depth.max(around + depth);
+                        content.depth = content.depth.max(outer_depth + depth);
                     }
                     // usvg breaks the cycle here.
                     Some(None) => {}
@@ -259,20 +259,20 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                 continue;
             }
             let node = self.doc.get_node(body.node).unwrap_or(self.doc.root_element());
-            last = (content.size, content.depth);
-            self.known.insert(*body, Some(last));
+            finished = (content.size, content.depth);
+            self.known.insert(*body, Some(finished));
             open.pop();
-            if last.0.check(budget).is_err() {
+            if finished.0.check(budget).is_err() {
                 first_over.get_or_insert(node);
             }
             visited.check(budget).map_err(|e| (node, TooMuch::Work(e.cut_short())))?;
-            if last.1.max(open.len()) > MAX_DEPTH {
+            if finished.1.max(open.len()) > MAX_DEPTH {
                 return Err((node, TooMuch::Depth));
             }
         }
         // Report the size of the whole drawing, but name the first element that exceeds the limits.
-        let counted = last.0.check(budget);
-        counted.map(|()| last).map_err(|e| (first_over.unwrap_or(self.doc.root_element()), TooMuch::Work(e)))
+        let counted = finished.0.check(budget);
+        counted.map(|()| finished).map_err(|e| (first_over.unwrap_or(self.doc.root_element()), TooMuch::Work(e)))
     }
 
     /// The content of a body, with the bodies shown inside still to be counted.
@@ -333,12 +333,12 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         out
     }
 
-    /// The values that an element inherits at its position in the file.
+    /// The values that an element inherits at its position in the file. There it has no context, so context paints count as unset.
     fn inherited(&self, node: Node<'a, 'i>) -> Inherited {
         let mut out = Inherited::default();
         let mut open: Vec<usize> = (0..INHERITED).collect();
-        for around in node.ancestors().skip(1).filter(Node::is_element) {
-            let (references, _) = self.references(around);
+        for ancestor in node.ancestors().skip(1).filter(Node::is_element) {
+            let (references, _) = self.references(ancestor);
             open.retain(|&i| match references[i] {
                 Reference::Unset | Reference::Context(_) => true,
                 Reference::Plain => false,
@@ -418,7 +418,8 @@ fn urls(value: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// An upper bound on the number of vertices of a path, polyline or polygon, from its numbers and commands.
+/// An upper bound on the number of vertices of a path, polyline or polygon, from its numbers and commands; 2 for a line, and for other
+/// shapes, which have few.
 fn vertices(node: Node<'_, '_>) -> u64 {
     /// Bytes whose count fits a byte, so that the compiler adds many at once.
     const BLOCK: usize = u8::MAX as usize;
@@ -505,8 +506,8 @@ fn has_extreme_numbers(data: &str) -> bool {
     false
 }
 
-/// Charges for strokes so wide that single precision is too coarse for usvg to outline them and find their boxes. The time grows with the
-/// width.
+/// Charges for very wide strokes. For these, single precision is so coarse that usvg outlines them and finds their boxes by many
+/// refinements, in a time that grows with the width.
 fn spend_wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
     /// Width up to which strokes take a negligible time.
     const WIDE: f64 = 2e6;
@@ -518,7 +519,7 @@ fn spend_wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<
         let end = value.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '+' | '-')));
         value[..end.unwrap_or(value.len())].trim_end_matches(['e', 'E']).parse::<f64>().ok()
     });
-    let width = widths.fold(0.0, f64::max).min(LARGEST);
+    let width = widths.fold(0.0, f64::max).min(LARGEST); // Larger numbers are out of range.
     if width < WIDE {
         return Ok(());
     }

@@ -88,15 +88,15 @@ impl Look {
 
     /// Finds the face that Chromium uses if no family is found or specified: its standard one or one with equal metrics, or else a
     /// sans-serif.
-    pub(super) fn standard_face(self, set: &GenericFamilies, db: &Database) -> Option<ID> {
+    pub(super) fn standard_face(self, generic: &GenericFamilies, db: &Database) -> Option<ID> {
         const STANDARD: &str = "Times New Roman";
-        let configured = set.serif.as_deref().and_then(|name| self.face_of(name, db));
+        let configured = generic.serif.as_deref().and_then(|name| self.face_of(name, db));
         let standard = || self.face_of(STANDARD, db).or_else(|| self.face_with_metrics_of(STANDARD, db));
-        configured.or_else(standard).or_else(|| self.face_of_kind(&FontFamily::SansSerif, set, db))
+        configured.or_else(standard).or_else(|| self.face_of_kind(&FontFamily::SansSerif, generic, db))
     }
 
     /// Finds a face of a family similar to one of the missing families, or of its generic family.
-    pub(super) fn face_like(self, missing: &[String], set: &GenericFamilies, db: &Database) -> Option<ID> {
+    pub(super) fn face_like(self, missing: &[String], generic: &GenericFamilies, db: &Database) -> Option<ID> {
         let alike = |name: &String| {
             let (families, weight, style) = substitutes(&ALIKE, name)?;
             self.or(weight, style, fontdb::Stretch::Normal).first_of(families, db)
@@ -106,7 +106,7 @@ impl Look {
             let weight = if words.contains("bold") { fontdb::Weight::BOLD } else { fontdb::Weight::NORMAL };
             let is_slanted = words.contains("italic") || words.contains("oblique");
             let style = if is_slanted { fontdb::Style::Italic } else { fontdb::Style::Normal };
-            self.or(weight, style, fontdb::Stretch::Normal).face_of_kind(&kind_of(name)?, set, db)
+            self.or(weight, style, fontdb::Stretch::Normal).face_of_kind(&kind_of(name)?, generic, db)
         };
         missing.iter().find_map(|name| alike(name).or_else(|| of_kind(name)))
     }
@@ -121,7 +121,7 @@ impl Look {
     }
 
     /// Finds a face of a generic family: the configured one, or else a common installed one, or else the bundled one.
-    pub(super) fn face_of_kind(self, kind: &FontFamily, set: &GenericFamilies, db: &Database) -> Option<ID> {
+    pub(super) fn face_of_kind(self, kind: &FontFamily, generic: &GenericFamilies, db: &Database) -> Option<ID> {
         let common: &[&str] = match kind {
             FontFamily::Serif => SERIFS,
             FontFamily::SansSerif => SANS_SERIFS,
@@ -134,7 +134,7 @@ impl Look {
         let last = if matches!(kind, FontFamily::Cursive | FontFamily::Fantasy) { SANS_SERIFS } else { &[] };
         // The bundled family has a single weight.
         let installed = |name: &&str| self.face_of(name, db).filter(|id| !is_bundled(*id, db));
-        match asked_for(kind, set) {
+        match configured_name(kind, generic) {
             Some(name) => self.face_of(name, db),
             None => common.iter().chain(last).find_map(installed).or_else(|| self.face_of(BUNDLED_FAMILY, db)),
         }
@@ -178,7 +178,7 @@ const KINDS: [(FontFamily, &str); 4] = [
 /// Guesses the generic family of a missing one from its name.
 fn kind_of(missing: &str) -> Option<FontFamily> {
     let name = plain(missing);
-    // A word anywhere in the name counts for more than a known beginning, but for less than a known name.
+    // The whole name decides if it is known, then a word in it, then a known beginning.
     let words = [
         ("mono", FontFamily::Monospace),
         ("typewriter", FontFamily::Monospace),
@@ -267,14 +267,14 @@ pub(super) fn of_interface(name: &str) -> Option<FontFamily> {
 }
 
 /// The name of a family, or the name configured for a generic one.
-pub(super) fn asked_for<'a>(family: &'a FontFamily, set: &'a GenericFamilies) -> Option<&'a String> {
+pub(super) fn configured_name<'a>(family: &'a FontFamily, generic: &'a GenericFamilies) -> Option<&'a String> {
     match family {
         FontFamily::Named(name) => Some(name),
-        FontFamily::Serif => set.serif.as_ref(),
-        FontFamily::SansSerif => set.sans_serif.as_ref(),
-        FontFamily::Cursive => set.cursive.as_ref(),
-        FontFamily::Fantasy => set.fantasy.as_ref(),
-        FontFamily::Monospace => set.monospace.as_ref(),
+        FontFamily::Serif => generic.serif.as_ref(),
+        FontFamily::SansSerif => generic.sans_serif.as_ref(),
+        FontFamily::Cursive => generic.cursive.as_ref(),
+        FontFamily::Fantasy => generic.fantasy.as_ref(),
+        FontFamily::Monospace => generic.monospace.as_ref(),
     }
 }
 

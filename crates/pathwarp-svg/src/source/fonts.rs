@@ -1,6 +1,8 @@
 //! Finds fonts for text: among installed ones on request, given files, and a bundled fallback.
 
-use super::faces::{BUNDLED, BUNDLED_FAMILY, DISPLAY, DISPLAY_FAMILY, GenericFamilies, Look, asked_for, of_interface};
+use super::faces::{
+    BUNDLED, BUNDLED_FAMILY, DISPLAY, DISPLAY_FAMILY, GenericFamilies, Look, configured_name, of_interface,
+};
 use super::fallback::{Wanted, fallback};
 use super::images::{self, Missing, Rejected};
 use super::read::ReadOptions;
@@ -235,7 +237,7 @@ fn find_face(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missin
         if found.is_some() {
             return found;
         }
-        let Some(name) = asked_for(family, generic).filter(|name| *name != NO_FAMILY) else { continue };
+        let Some(name) = configured_name(family, generic).filter(|name| *name != NO_FAMILY) else { continue };
         absent.push(name.clone());
         similar = look.face_with_metrics_of(name, db);
         if similar.is_some() {

@@ -4,7 +4,7 @@
 use super::check;
 use super::links::{Target, read_linked, target};
 use super::read::{self, ReadOptions};
-use super::text::plain;
+use super::text::to_plain;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Crc;
@@ -152,7 +152,7 @@ pub(super) fn checked(
         Err(_) => return Ok(None),
     };
     // Undeclared prefixes are errors, and drawings that this one links to are not read.
-    let checked = plain(text, place, budget, None, &|_| None, |_, doc, _| {
+    let checked = to_plain(text, place, budget, None, &|_| None, |_, doc, _| {
         Ok(check::check_drawing(doc, place, budget).map(|_| Arc::new(doc.input_text().as_bytes().to_vec())))
     });
     match checked {

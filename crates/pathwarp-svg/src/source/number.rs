@@ -143,15 +143,14 @@ fn significant(v: f64, digits: i32) -> String {
     out
 }
 
-/// Formats numbers with the decimals of the largest, which gets nine significant digits.
+/// Formats numbers with nine significant digits each, but no decimals beyond the twelfth digit of the largest.
 pub(crate) fn shorts(values: &[f64]) -> impl Iterator<Item = String> {
     together(values, SHORT, 3)
 }
 
-/// Formats numbers of single precision with the decimals of the largest.
+/// Formats numbers of single precision with seven significant digits each, but no decimals beyond the eighth digit of the largest.
 pub(crate) fn singles(values: &[f32]) -> Vec<String> {
     let values: Vec<f64> = values.iter().map(|v| f64::from(*v)).collect();
-    // The last digit of the largest is already rounded.
     together(&values, SINGLE, 1).collect()
 }
 
@@ -170,9 +169,10 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
 /// Formats a path as a `d` attribute with absolute commands. `decimals` gives the numbers of decimals for the handles and the end of each
 /// element, by its index.
 ///
-/// `coarsest` gives the largest step that rounding to these decimals may have, or `None` if the decimals are fixed. If they are not,
-/// handles so short that rounding would turn them get more decimals, so that smooth joints stay smooth. Whether a cubic is written as a
-/// quadratic then depends on that step alone, so that neighbours under different transforms write a shared edge equally.
+/// `coarsest` is `None` if the decimals are fixed. Otherwise it gives the largest step for which an element's decimals were chosen: the
+/// unit of the last one is the power of ten below. Handles so short that rounding would turn them then get more decimals, so that smooth
+/// joints stay smooth. Whether a cubic is written as a quadratic depends on `coarsest` alone, which in root user space is the same for
+/// neighbours under different transforms, so that they write a shared edge equally.
 pub(crate) fn path_data_by(
     path: &BezPath,
     coarsest: impl Fn(usize) -> Option<f64>,
@@ -214,7 +214,7 @@ pub(crate) fn path_data_by(
                 let coarsest = coarsest(i);
                 let step = POWERS[usize::from(handle.min(MAX_DECIMALS))].recip();
                 let quad = quadratic(last, a, b, p).filter(|(q, gap)| match coarsest {
-                    // Steps are usually between a tenth of the coarsest and the coarsest.
+                    // The step is between a tenth of the coarsest and the coarsest, unless the number of decimals is at its limits.
                     Some(coarsest) => {
                         let least = STEADY * coarsest.max(step);
                         let steady = |exact, v: Vec2| exact == Vec2::ZERO || (is_kept(exact, v) && v.hypot() >= least);
@@ -366,8 +366,9 @@ pub(crate) fn arcs_data(outline: &Outline, more: u8, decimals: impl Fn(usize) ->
         let nominal = POWERS[usize::from(decimals(i).min(MAX_DECIMALS))].recip();
         let holds = |a: &EllipticArc, from: Point, d: u8| ArcText::new(a, d).error(a, from) <= nominal;
         let first = decimals(i).saturating_add(1).min(MAX_DECIMALS);
-        let all = |d: u8| s.segs.iter().all(|g| if let Seg::Arc(a) = g { holds(a, rounded(a.p0, d), d) } else { true });
-        let decimals = (first..=(first + more).min(MAX_DECIMALS)).find(|d| all(*d)).unwrap_or(first);
+        let all_hold =
+            |d: u8| s.segs.iter().all(|g| if let Seg::Arc(a) = g { holds(a, rounded(a.p0, d), d) } else { true });
+        let decimals = (first..=(first + more).min(MAX_DECIMALS)).find(|d| all_hold(*d)).unwrap_or(first);
         subpath_with_arcs(&mut out, s, decimals, nominal, holds);
     }
     out
@@ -383,7 +384,7 @@ fn subpath_with_arcs(
 ) {
     // The numbers of an arc are its radii and turn, two flags, and its end.
     let decimals_of = |command: char, i: usize| match (command, i) {
-        ('A', 0..3) => finer(decimals),
+        ('A', 0..3) => axis_decimals(decimals),
         ('A', 3..5) => 0,
         _ => decimals,
     };
@@ -408,7 +409,7 @@ fn subpath_with_arcs(
 }
 
 /// Decimals of an arc's radii and turn.
-fn finer(decimals: u8) -> u8 {
+fn axis_decimals(decimals: u8) -> u8 {
     decimals.saturating_add(2).min(MAX_DECIMALS)
 }
 
@@ -423,21 +424,21 @@ struct ArcText {
     /// The end as it will be read.
     to: Point,
     /// Decimals of radii and turn.
-    finer: u8,
+    axis_decimals: u8,
 }
 
 impl ArcText {
     fn new(a: &EllipticArc, decimals: u8) -> Self {
-        let finer = finer(decimals);
+        let axis_decimals = axis_decimals(decimals);
         let (radii, turn) = axes(a);
         let (large, sweep) = (a.sweep.abs() > std::f64::consts::PI, a.sweep * a.a.cross(a.b) > 0.0);
-        Self { radii, turn, large, sweep, to: rounded(a.p1, decimals), finer }
+        Self { radii, turn, large, sweep, to: rounded(a.p1, decimals), axis_decimals }
     }
 
     /// Estimates the distance between the arc and the arc that will be read if it starts at `from`.
     fn error(&self, a: &EllipticArc, from: Point) -> f64 {
         const SAMPLES: u32 = 16;
-        let round = |v: f64| rounded(Point::new(v, 0.0), self.finer).x;
+        let round = |v: f64| rounded(Point::new(v, 0.0), self.axis_decimals).x;
         let radii = Vec2::new(round(self.radii[0]), round(self.radii[1]));
         let Some(read) = EllipticArc::from_svg(from, radii, round(self.turn), self.large, self.sweep, self.to) else {
             return a.p0.distance(from) + a.p1.distance(self.to);

@@ -71,7 +71,7 @@ impl SourceText {
         then: impl FnOnce(&Self, &roxmltree::Document<'_>) -> Result<T, Error>,
     ) -> Result<(Self, T), Error> {
         let mut undeclared = Vec::new();
-        let (source, result) = plain(text, name, budget, Some(&mut undeclared), linked, |plain, doc, expanded| {
+        let (source, result) = to_plain(text, name, budget, Some(&mut undeclared), linked, |plain, doc, expanded| {
             let mut source = Self::from_plain(doc, plain, name)?;
             if expanded {
                 source.unpatchable.get_or_insert(Unpatchable::Entities);
@@ -421,7 +421,7 @@ impl SourceText {
 
 /// Parses a drawing, resolves it into plain SVG, and calls `then` with the result, its tree, and `true` if entities that hold elements were
 /// expanded. Undeclared prefixes are declared and added to `undeclared`; if that is `None`, they are an error.
-pub(super) fn plain<T>(
+pub(super) fn to_plain<T>(
     mut text: String,
     name: &str,
     budget: &Budget,

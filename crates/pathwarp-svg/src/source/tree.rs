@@ -7,7 +7,7 @@ use super::fonts::{self, Chooser, FontGuard};
 use super::images::{self, Missing, Rejected, Unread};
 use super::pieces::{self, Divided};
 use super::read::{self, ReadOptions};
-use super::text::{SourceText, plain};
+use super::text::{SourceText, to_plain};
 use super::threads::with_stack;
 use pathwarp::Error;
 use pathwarp_reader::xml;
@@ -16,7 +16,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use usvg::roxmltree;
 
-/// Missing fonts and images of a drawing, and other gaps.
+/// Fonts, letters and images that usvg's tree of a drawing lacks, and content and style that a picture of it does not show.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Missed {
     pub(crate) fonts: Vec<String>,
@@ -146,7 +146,7 @@ pub(crate) fn parse_counted(
 ) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     let text = read::text(data, name, &options.budget)?;
     let linked = |link: &str| images::linked_drawing(link, options);
-    plain(text, name, &options.budget, None, &linked, |plain, doc, _| {
+    to_plain(text, name, &options.budget, None, &linked, |plain, doc, _| {
         let (tree, missed) = with_stack(name, || tree(doc, name, options))?;
         Ok((Arc::new(tree), missed.with_undrawn(&SourceText::from_plain(doc, plain, name)?)))
     })
@@ -154,7 +154,7 @@ pub(crate) fn parse_counted(
 
 /// Content that usvg does not support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Unknown {
+pub(crate) enum Unsupported {
     /// Inkscape's text that flows in a frame.
     FlowedText,
     /// HTML.
@@ -164,15 +164,15 @@ pub(crate) enum Unknown {
 }
 
 /// Classifies an element that usvg does not render.
-pub(crate) fn unknown(source: &SourceText, e: ElementId) -> Option<Unknown> {
+pub(crate) fn unsupported(source: &SourceText, e: ElementId) -> Option<Unsupported> {
     match source.elements[e].tag.as_ref() {
-        "flowRoot" => Some(Unknown::FlowedText),
-        // Browsers don't show the private data of editors.
+        "flowRoot" => Some(Unsupported::FlowedText),
+        // Browsers don't show the private data of editors. HTML beside a text in a `switch` is drawn as that text.
         "foreignObject" if source.attr(e, "requiredExtensions").is_none() => {
-            source.foreign.binary_search_by_key(&e, |f| f.0).is_err().then_some(Unknown::Foreign)
+            source.foreign.binary_search_by_key(&e, |f| f.0).is_err().then_some(Unsupported::Foreign)
         }
         "use" | "textPath" | "tref" if source.link(e).is_some_and(|link| is_elsewhere(&link)) => {
-            Some(Unknown::Elsewhere)
+            Some(Unsupported::Elsewhere)
         }
         _ => None,
     }
@@ -206,10 +206,10 @@ fn undrawn_meshes(source: &SourceText) -> impl Iterator<Item = String> {
 pub(crate) fn undrawn(source: &SourceText) -> Vec<String> {
     let shown = |e: &ElementId| !is_definition(source, *e);
     let content = (0..source.elements.len()).filter(shown).filter_map(|e| {
-        let problem = match unknown(source, e)? {
-            Unknown::FlowedText => "text that flows in a frame (flowRoot), which only Inkscape lays out",
-            Unknown::Foreign => "foreign content (HTML in a foreignObject)",
-            Unknown::Elsewhere => "what it refers to is in another file",
+        let problem = match unsupported(source, e)? {
+            Unsupported::FlowedText => "text that flows in a frame (flowRoot), which only Inkscape lays out",
+            Unsupported::Foreign => "foreign content (HTML in a foreignObject)",
+            Unsupported::Elsewhere => "what it refers to is in another file",
         };
         Some(format!("{} is not drawn: {problem}", source.display_name(e)))
     });

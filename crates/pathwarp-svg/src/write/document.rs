@@ -10,7 +10,7 @@ use crate::source::elements::{ElementId, is_shape};
 use crate::source::images::{is_same_link, shown};
 use crate::source::mesh::is_mesh;
 use crate::source::text::SourceText;
-use crate::source::tree::{Unknown, is_definition, unknown};
+use crate::source::tree::{Unsupported, is_definition, unsupported};
 use pathwarp::Error;
 use pathwarp::kurbo::Rect;
 use pathwarp_reader::xml::escape;
@@ -145,13 +145,13 @@ fn unknown_paint(tag: &str) -> Option<&'static str> {
 
 /// The reason why content that the renderer does not know is not warped.
 fn unknown_content(source: &SourceText, e: ElementId) -> Option<&'static str> {
-    Some(match unknown(source, e)? {
-        Unknown::FlowedText => {
+    Some(match unsupported(source, e)? {
+        Unsupported::FlowedText => {
             "text that flows in a frame (flowRoot) cannot be warped, as only Inkscape lays it out; convert it to ordinary text or to \
              paths there"
         }
-        Unknown::Foreign => "foreign content (HTML in a foreignObject) cannot be warped",
-        Unknown::Elsewhere => "what it refers to is in another file, which is not read",
+        Unsupported::Foreign => "foreign content (HTML in a foreignObject) cannot be warped",
+        Unsupported::Elsewhere => "what it refers to is in another file, which is not read",
     })
 }
 

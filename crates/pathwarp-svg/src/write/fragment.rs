@@ -141,7 +141,7 @@ impl<'a> Writer<'a> {
             let id = self.mask_id(i);
             properties.push(("mask", format!("url(#{id})")));
         }
-        if self.input.has_filters(g) {
+        if self.input.keeps_filters(g) {
             properties.push(("filter", self.filters(g)));
         }
         if g.blend != BlendMode::Normal {

@@ -65,8 +65,8 @@ impl<'a> WriteInput<'a> {
         self.filters.get(&g.slot.filter(|_| !g.filters.is_empty())?)
     }
 
-    /// Returns `true` if a group still has its filters.
-    pub(super) fn has_filters(&self, g: &Group) -> bool {
+    /// Returns `true` if a group has filters in the result.
+    pub(super) fn keeps_filters(&self, g: &Group) -> bool {
         !g.filters.is_empty() && matches!(self.filter_outcome(g), None | Some(FilterOutcome::Fits))
     }
 
@@ -96,7 +96,7 @@ impl<'a> WriteInput<'a> {
         self.outcomes[parts].iter().any(|o| o.warped().is_some())
     }
 
-    /// The frame in the result of an object that moves along with its slot.
+    /// The frame (from an object's coordinates to root user space) in the result, of an object that moves along with its slot.
     pub(super) fn written(&self, slot: Option<usize>, frame: Affine) -> Affine {
         frame_in_result(self.scene, self.slots, slot, frame)
     }

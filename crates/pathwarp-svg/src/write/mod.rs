@@ -1,5 +1,6 @@
 //! The result as text: the source patched in place, or flattened to a new file.
 
+pub(crate) mod bent_filters;
 mod boxes;
 mod defs;
 pub(crate) mod document;
@@ -13,5 +14,4 @@ mod line;
 mod markup;
 mod mesh;
 mod page;
-pub(crate) mod shadows;
 mod surroundings;

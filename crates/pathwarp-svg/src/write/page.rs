@@ -29,7 +29,7 @@ struct Measure<'a> {
     counts: &'a [bool],
     /// Parts certain to be inside this area need no exact measurement.
     covered: Option<Rect>,
-    /// The visible area before the warp, if only artwork from there counts.
+    /// The page on which artwork was shown before the warp, if only such artwork counts.
     page: Option<Rect>,
 }
 
@@ -87,6 +87,7 @@ fn auto_page(input: &WriteInput<'_>, page: Rect) -> Option<Rect> {
         if needed.x1 > tolerated.x1 { whole.x1 } else { page.x1 },
         if needed.y1 > tolerated.y1 { whole.y1 } else { page.y1 },
     );
+    // A page that is a fraction of the window extends to the right and downwards as far as there is artwork.
     (out.origin() != page.origin() || !input.drawing.shares_window()).then_some(out)
 }
 
@@ -149,7 +150,7 @@ pub(super) fn attributes(input: &WriteInput<'_>, (page, shown): (Rect, Rect)) ->
         if l.unit != LengthUnit::Percent {
             out.push((name, format!("{}{}", short(l.number * after / before), unit(l.unit))));
         } else if source.attr(0, "viewBox").is_none() {
-            // With a viewBox, a fraction of the window would be a scale.
+            // With a viewBox, a percentage scales the page to the window, and stays.
             out.push((name, short(after)));
         }
     }
@@ -205,18 +206,21 @@ fn margin(input: &WriteInput<'_>, page: Rect) -> f64 {
 fn original(input: &WriteInput<'_>, covered: Option<Rect>) -> Option<Rect> {
     let outcomes: Vec<_> = input.outcomes.iter().map(|_| PartOutcome::Kept).collect();
     let images: Vec<_> = input.images.iter().map(|_| EmbeddedImage::Placed).collect();
-    artwork(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], line: None, ..*input }, covered)
+    drawn(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], ..*input }, covered)
+}
+
+/// Bounding box of the warped artwork, with the line of a contour and the marks for the viewer's position, which are drawn beside it.
+fn artwork(input: &WriteInput<'_>, covered: Option<Rect>) -> Option<Rect> {
+    let line = input.line.map(|l| line::bounds(input, l));
+    let sight = input.options.sight.as_ref().map(line::sight_bounds);
+    drawn(input, covered).into_iter().chain(line).chain(sight).reduce(|a, b| a.union(b))
 }
 
 /// Bounding box of everything painted, strokes included, in root user space. Guides do not count. Artwork inside the area `covered` is
 /// not measured exactly.
-fn artwork(input: &WriteInput<'_>, covered: Option<Rect>) -> Option<Rect> {
-    let counts = guideless(input);
-    let measure = Measure { counts: &counts, covered, page: input.options.grown.or(input.drawing.specified_area()) };
-    let line = input.line.map(|l| line::bounds(input, l));
-    let sight = input.options.sight.as_ref().map(line::sight_bounds);
-    let drawn = group_box(input, &input.scene.root, measure);
-    drawn.into_iter().chain(line).chain(sight).reduce(|a, b| a.union(b))
+fn drawn(input: &WriteInput<'_>, covered: Option<Rect>) -> Option<Rect> {
+    let (counts, page) = (guideless(input), input.options.grown.or(input.drawing.specified_area()));
+    group_box(input, &input.scene.root, Measure { counts: &counts, covered, page })
 }
 
 /// For every element, `true` unless it is a guide.
@@ -285,6 +289,7 @@ fn image_boxes(input: &WriteInput<'_>, i: usize) -> Option<(Rect, Rect)> {
     let area = Rect::new(0.0, 0.0, pixels.width().into(), pixels.height().into());
     let frame = input.written(b.slot, b.frame);
     let after = match &input.images[i] {
+        // The area is in the element's user space, and the frame leads from pixels.
         EmbeddedImage::Bent { image, .. } => (frame * b.placing.inverse()).transform_rect_bbox(image.area),
         _ => frame.transform_rect_bbox(area),
     };
@@ -306,7 +311,7 @@ fn shows(input: &WriteInput<'_>, g: &Group, area: Rect, counts: &[bool]) -> bool
         Node::Image(i) => image_boxes(input, *i).is_some_and(|(_, after)| overlap(after, area).is_some()),
         Node::Part(i) => {
             let p = input.part(*i);
-            let paints = is_seen(p) && p.role == PartRole::Paint && p.owner.or(p.source).is_none_or(|e| counts[e]);
+            let paints = is_seen(p) && p.role == PartRole::Paint && p.element().is_none_or(|e| counts[e]);
             paints && paints_in(p, input.warped(*i), input.written(p.slot, p.frame), area)
         }
     })
@@ -330,7 +335,7 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         Node::Group(g) | Node::Text { content: g, .. } => group_box(input, g, m),
         Node::Part(i) => {
             let p = &scene.parts[*i];
-            let counts = is_seen(p) && p.role == PartRole::Paint && p.owner.or(p.source).is_none_or(|e| m.counts[e]);
+            let counts = is_seen(p) && p.role == PartRole::Paint && p.element().is_none_or(|e| m.counts[e]);
             let frame = input.written(p.slot, p.frame);
             let warped = input.warped(*i);
             let is_painted = counts && warped.is_none_or(WarpedPart::draws);
@@ -364,7 +369,7 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         let pictures = outcome.pictures().into_iter().flatten().map(|p| frame.transform_rect_bbox(p.area));
         all = pictures.fold(all, |all, p| all.union(p));
     }
-    for f in g.filters.iter().filter(|_| input.has_filters(g)) {
+    for f in g.filters.iter().filter(|_| input.keeps_filters(g)) {
         if let Some(s) = g.slot {
             let frame = input.written(g.slot, scene.slots[s].frame);
             let region = boxes::grown(f, growth);
@@ -374,14 +379,14 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
     if let Some(i) = g.clip {
         all = overlap(all, warped_clip(input, i)?)?;
     }
-    if let Some(m) = g.mask.map(|i| &scene.masks[i]) {
-        let boxes = m.parts.clone().map(|i| {
+    if let Some(mask) = g.mask.map(|i| &scene.masks[i]) {
+        let boxes = mask.parts.clone().map(|i| {
             let p = &scene.parts[i];
             painted_box(p, input.warped(i), input.written(p.slot, p.frame))
         });
         all = overlap(all, boxes.reduce(|a, b| a.union(b))?)?;
-        let region = m.frame.transform_rect_bbox(m.rect);
-        let bend = input.bend(m.parts.clone()).filter(|_| input.changes(m.parts.clone()));
+        let region = mask.frame.transform_rect_bbox(mask.rect);
+        let bend = input.bend(mask.parts.clone()).filter(|_| input.changes(mask.parts.clone()));
         all = overlap(all, bend.map_or(Some(region), |bend| image_box(bend, region))?)?;
     }
     (all.width() >= 0.0 && all.height() >= 0.0).then_some(all)
@@ -412,6 +417,7 @@ pub(super) fn arrivals(input: &WriteInput<'_>, shown: Rect) -> Vec<String> {
 
 /// Adds the elements of a group that lay off the page and now show in an area.
 fn add_arrivals(input: &WriteInput<'_>, g: &Group, (page, shown): (Rect, Rect), found: &mut BTreeSet<ElementId>) {
+    // What a mask lets through is not known.
     if g.opacity <= 0.0 || g.mask.is_some() {
         return;
     }
@@ -432,7 +438,7 @@ fn add_arrivals(input: &WriteInput<'_>, g: &Group, (page, shown): (Rect, Rect), 
                 let was_off = || is_off(quick) || is_off(painted_box(p, None, p.frame));
                 let after = || painted_box(p, input.warped(*i), input.written(p.slot, p.frame));
                 let may_arrive = is_seen(p) && p.role == PartRole::Paint && !page.contains_rect(quick);
-                found.extend(p.owner.or(p.source).filter(|_| may_arrive && was_off() && shows(after())));
+                found.extend(p.element().filter(|_| may_arrive && was_off() && shows(after())));
             }
         }
     }

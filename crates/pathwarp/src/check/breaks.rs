@@ -120,7 +120,7 @@ fn refine(tested: &Tested<'_>, mut intervals: Vec<Interval>) -> Vec<Break> {
             let is_left = change(k) > 0.05 * LEAST && change(k) > 0.3 * before;
             if is_left && round + 1 < HALVINGS {
                 kept.push(next);
-            } else if is_left && tested.contains(next.center) && !tested.has_crease_near(next.center, half) {
+            } else if is_left && tested.is_in_domain(next.center) && !tested.has_crease_near(next.center, half) {
                 let slope = (v[k + 1] - v[k - 1]).hypot() / (2.0 * half.hypot());
                 let is_jump = change(k) > 32.0 * before;
                 let by = if is_jump { change(k) * half.hypot() } else { change(k) };

@@ -235,19 +235,19 @@ impl<'a> Tested<'a> {
         // A grid of 9 × 9 points, in percent of the box, that avoids likely creases.
         let grid = (0..81).map(|n| (3.7 + 11.3 * f64::from(n / 9), 4.3 + 11.1 * f64::from(n % 9)));
         let sample = |(u, v)| Point::new(frame.x0 + u * frame.width() / 100.0, frame.y0 + v * frame.height() / 100.0);
-        tested.samples = grid.map(sample).filter(|p| tested.contains(*p)).collect();
+        tested.samples = grid.map(sample).filter(|p| tested.is_in_domain(*p)).collect();
         tested.outside = 81 - tested.samples.len();
         tested.images = tested.values(&tested.samples);
         tested
     }
 
     /// Returns `true` if the map may be undefined somewhere, so that NaN is no fault.
-    fn is_partial(&self) -> bool {
+    fn allows_nan(&self) -> bool {
         self.built.undefined.is_some() || self.creases.items().iter().any(|c| c.kind == CreaseKind::Edge)
     }
 
     /// Returns `true` if the map is declared to be defined at a point.
-    fn contains(&self, p: Point) -> bool {
+    fn is_in_domain(&self, p: Point) -> bool {
         self.creases.defined_at(p) && self.built.undefined.as_ref().is_none_or(|why| why(p).is_none())
     }
 
@@ -326,7 +326,7 @@ fn exact_images(tested: &Tested<'_>) -> Check {
                 let t = f64::from(i) / 12.0;
                 let (a, b) = (image.eval(t), map.point(source.eval(t)));
                 let distance = a.distance(b);
-                if distance > 1e-9 * (1.0 + b.to_vec2().hypot()) || (distance.is_nan() && !tested.is_partial()) {
+                if distance > 1e-9 * (1.0 + b.to_vec2().hypot()) || (distance.is_nan() && !tested.allows_nan()) {
                     let [a, b] = [a, b].map(coordinates);
                     check.fault(format!("the exact image at {} is {a}, the map says {b}", number(t)));
                 }
@@ -379,7 +379,7 @@ fn refitting(t: &Tested<'_>) -> Check {
     let (map, frame) = (t.map, t.frame);
     // A point inside the domain, so that short lines lie in it.
     let inner = t.samples.get(t.samples.len() / 2).copied();
-    let center = inner.filter(|_| !t.contains(frame.center())).unwrap_or(frame.center());
+    let center = inner.filter(|_| !t.is_in_domain(frame.center())).unwrap_or(frame.center());
     let hundredth = 0.01 * frame.size().to_vec2().hypot();
     // In the box of checks, a hundredth of a unit.
     let tolerance = hundredth / 2_f64.sqrt() * 0.01;
@@ -395,7 +395,7 @@ fn refitting(t: &Tested<'_>) -> Check {
         (Outline::from_points(&[center - half, center + half], false), SAMPLES * n + 97)
     }));
     let all = art.len();
-    art.retain(|(art, _)| art.segs().all(|g| (0..=100).all(|i| t.contains(g.eval(f64::from(i) / 100.0)))));
+    art.retain(|(art, _)| art.segs().all(|g| (0..=100).all(|i| t.is_in_domain(g.eval(f64::from(i) / 100.0)))));
     let mut pieces = 0;
     for (art, samples) in &art {
         let fitted = refit::warp_path(art, map, &refit::Options::new(tolerance).with_nodes(refit::Nodes::Source));
@@ -559,7 +559,7 @@ fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
         return 0;
     };
     let (tested, later) = (Tested::new(first, frame().rect), Tested::new(last, frame().rect));
-    let is_partial = tested.is_partial() || later.is_partial();
+    let allows_nan = tested.allows_nan() || later.allows_nan();
     let skips = Cell::new(tested.outside);
     let tried = Cell::new(0);
     // The sample with the largest value in the last call of `worst`.
@@ -569,7 +569,7 @@ fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
         let (mut largest, mut undefined) = (0.0_f64, tested.outside);
         for &p in &tested.samples {
             let value = f(p);
-            if value.is_nan() && is_partial {
+            if value.is_nan() && allows_nan {
                 undefined += 1;
                 continue;
             }

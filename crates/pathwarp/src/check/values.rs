@@ -10,6 +10,7 @@ pub(super) fn values(t: &Tested<'_>) -> Check {
     let count = t.samples.len();
     let mut check = Check::new("values", "");
     if !t.has_values() {
+        // Without samples, the whole grid lies outside the domain.
         let (places, f) = (if count == 0 { t.outside } else { count }, t.frame);
         check
             .fault(format!("has no value at any of {places} places in the box {},{} to {},{}", f.x0, f.y0, f.x1, f.y1));
@@ -27,17 +28,17 @@ pub(super) fn values(t: &Tested<'_>) -> Check {
     let tolerance = if gives_derivatives { 1e-5 } else { 1e-2 };
     let mut outside = t.outside;
     let mut slopes = Slopes::default();
-    // The points for each of the faults below.
-    let mut bad: [Vec<Point>; 3] = [const { Vec::new() }; 3];
+    // The faulty points, by the index of their fault in FAULTS.
+    let mut faulty: [Vec<Point>; 3] = [const { Vec::new() }; 3];
     for (((p, j), q), found) in t.samples.iter().zip(&jets).zip(&t.images).zip(differences(t)) {
         if !q.is_finite() || !j.is_finite() {
-            bad[usize::from(q.is_finite())].push(*p);
+            faulty[usize::from(q.is_finite())].push(*p);
             continue;
         }
         if differ(t.map.jet(*p).p, j.p) || differ(*q, j.p) {
-            bad[2].push(*p);
+            faulty[2].push(*p);
         }
-        if t.is_partial() && !(found[0] + found[1]).is_finite() {
+        if t.allows_nan() && !(found[0] + found[1]).is_finite() {
             outside += 1;
         } else {
             slopes.add(*p, j, found, tolerance);
@@ -48,7 +49,7 @@ pub(super) fn values(t: &Tested<'_>) -> Check {
         "has no derivatives",
         "gives another value with derivatives than without, or alone than in a batch,",
     ];
-    for (fault, points) in FAULTS.iter().zip(bad).filter(|(_, points)| !points.is_empty()) {
+    for (fault, points) in FAULTS.iter().zip(faulty).filter(|(_, points)| !points.is_empty()) {
         check.fault(format!("{fault} at {} of {count} places, such as {}", points.len(), coordinates(points[0])));
         check.faulty.extend(points);
     }
@@ -141,7 +142,7 @@ impl Slopes {
 fn rounding(t: &Tested<'_>) -> Option<String> {
     // Coordinates that no decimal number of few digits equals.
     let shift = t.frame.size().to_vec2() * (0.01 / PI);
-    let points: Vec<Point> = t.samples.iter().map(|p| *p + shift).filter(|p| t.contains(*p)).collect();
+    let points: Vec<Point> = t.samples.iter().map(|p| *p + shift).filter(|p| t.is_in_domain(*p)).collect();
     let images: Vec<Point> = t.values(&points).into_iter().filter(|q| q.is_finite()).collect();
     let [xs, ys]: [Vec<f64>; 2] = [images.iter().map(|q| q.x).collect(), images.iter().map(|q| q.y).collect()];
     let is_varied = |values: &[f64]| values.len() >= 9 && values.iter().any(|v| *v != values[0]);

@@ -260,7 +260,7 @@ pub struct Example {
 /// Parameters' names and values, as a user would type them.
 pub type Pairs = &'static [(&'static str, &'static str)];
 
-/// A property of a deformation that [`check::entry`](crate::check::entry) tests.
+/// A property of a deformation that [`check::entry`](crate::check::entry) tests, for artwork in the frame 0,0,100,100.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub enum Law {

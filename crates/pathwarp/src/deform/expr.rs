@@ -1,8 +1,8 @@
 //! Maps given by formulas for x' and y'.
 //!
 //! The text becomes a list of operations ([`formula`](crate::formula)), which runs on plain and on dual numbers, so that derivatives
-//! are exact. Each kink of abs, min or max, and each jump of sign or floor, is a crease, given by a level set. In a branch, the list has
-//! every such operation replaced by the side on which the branch lies.
+//! are exact. Each kink of abs, min or max, and each jump of sign or floor, is a crease, given by a level set. A branch continues the
+//! map smoothly beyond the creases around a point: in its list, every such operation is replaced by its formula there (abs(a) by a or −a).
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law};
 use crate::error::Error;
@@ -68,7 +68,7 @@ impl Expr {
             return Err(Error::missing("x", "a formula for x, y or both, such as 'x + 4*sin(y/16)'"));
         }
         let mut program = Program::default();
-        let mut names = builtin(&mut program, self.frame)
+        let mut names = builtin_names(&mut program, self.frame)
             .ok_or_else(|| Error::usage("x", "", "has no room for the built-in names"))?;
         for text in &self.definitions {
             let Some((name, formula)) = text.split_once('=') else {
@@ -188,8 +188,8 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     Expr { frame: s.frame().rect, x: formula("x"), y: formula("y"), definitions }.build()
 });
 
-/// Defines the built-in names.
-fn builtin<'a>(p: &mut Program, r: Rect) -> Option<Names<'a>> {
+/// Defines the built-in names. `None` if the program becomes too long, which no new one does.
+fn builtin_names<'a>(p: &mut Program, r: Rect) -> Option<Names<'a>> {
     let mut names = Names::new();
     let (x, y) = (p.x()?, p.y()?);
     names.set("x", x);
@@ -245,12 +245,12 @@ impl ExprMap {
     }
 }
 
-/// Number of operations that take as long as a bicubic net.
-const OPERATIONS: f64 = 8.0;
+/// Number of operations that take as long as a bicubic net, the unit of [`Cost::work`].
+const OPERATIONS_PER_COST: f64 = 8.0;
 
 impl Map for ExprMap {
     fn cost(&self) -> Cost<'_> {
-        Cost::new(1.0 + self.program.len() as f64 / OPERATIONS)
+        Cost::new(1.0 + self.program.len() as f64 / OPERATIONS_PER_COST)
     }
 
     fn jet(&self, p: Point) -> Jet {
@@ -306,7 +306,7 @@ impl Map for ExprMap {
     }
 }
 
-/// The function that is zero at a kink of a program.
+/// The function that is zero at a kink or a jump of a program.
 impl Field for (Kink, Arc<Program>) {
     fn at(&self, p: Point) -> f64 {
         self.0.level(&self.1.run([p.x], [p.y]))
@@ -334,7 +334,6 @@ mod tests {
         ENTRY.build_from(&Args::from_pairs(pairs), &check::frame()).map(|b| b.map)
     }
 
-    /// Checks the value and the derivatives of every function, through the parser.
     #[test]
     fn functions_and_their_derivatives() {
         let p = Point::new(0.6, 0.3);

@@ -71,10 +71,10 @@ impl Lens {
         if corner <= 0.0 {
             return Err(Error::usage("field", degrees(), "spans artwork that has no size"));
         }
-        let f = corner / from.radius(half_field);
-        let f1 = if self.keep_middle { f } else { corner / to.radius(half_field) };
-        let mut built = Built::new(Arc::new(LensMap { center, from, to, f, f1 }));
-        built.note(format!("focal lengths {f:.6} and {f1:.6}"));
+        let focal = corner / from.radius(half_field);
+        let new_focal = if self.keep_middle { focal } else { corner / to.radius(half_field) };
+        let mut built = Built::new(Arc::new(LensMap { center, from, to, focal, new_focal }));
+        built.note(format!("focal lengths {focal:.6} and {new_focal:.6}"));
         Ok(built)
     }
 }
@@ -182,8 +182,8 @@ struct LensMap {
     from: LensModel,
     to: LensModel,
     /// The focal lengths f and f'.
-    f: f64,
-    f1: f64,
+    focal: f64,
+    new_focal: f64,
 }
 
 impl LensMap {
@@ -195,7 +195,7 @@ impl LensMap {
             LensModel::Stereographic => limit >= PI,
             _ => false,
         };
-        if is_infinite { f64::INFINITY } else { self.f * self.from.radius(limit) }
+        if is_infinite { f64::INFINITY } else { self.focal * self.from.radius(limit) }
     }
 }
 
@@ -204,11 +204,11 @@ impl Formula for LensMap {
         /// ρ and ρ⁻¹ are r·(1 + O(r²)): below this r the scale is f'/f to the last bit.
         const TINY: f64 = 1e-9;
         let (u, v) = (x - self.center.x, y - self.center.y);
-        let r = u.hypot(v) / self.f;
+        let r = u.hypot(v) / self.focal;
         let k = if r.value() < TINY {
-            S::from(self.f1 / self.f)
+            S::from(self.new_focal / self.focal)
         } else {
-            self.to.radius(self.from.angle(r)) / r * (self.f1 / self.f)
+            self.to.radius(self.from.angle(r)) / r * (self.new_focal / self.focal)
         };
         (u * k + self.center.x, v * k + self.center.y)
     }
@@ -218,25 +218,25 @@ impl Formula for LensMap {
             return Class::Smooth;
         }
         let o = self.center.to_vec2();
-        Class::Affine(Affine::translate(o) * Affine::scale(self.f1 / self.f) * Affine::translate(-o))
+        Class::Affine(Affine::translate(o) * Affine::scale(self.new_focal / self.focal) * Affine::translate(-o))
     }
 
     fn creases(&self, out: &mut Creases) {
         let (max_radius, center) = (self.max_radius(), self.center);
         if max_radius.is_finite() && self.from != self.to {
-            // The domain is inside the circle, which the negative radius says.
+            // The negative radius puts the domain inside the circle.
             out.push(Crease::edge(Level::Circle { center, radius: -max_radius }));
         }
     }
 
-    /// A quarter of the focal length or of the distance to the rim, within which angles are analytic functions of the distance.
+    /// A quarter of the radius within which θ is an analytic function of r: the focal length, or the distance to the rim if that is less.
     fn detail(&self, area: Rect) -> Option<f64> {
         let farthest = Frame::new(area).corners().map(|p| self.center.distance(p)).into_iter().fold(0.0, f64::max);
-        Some(0.25 * self.f.min(self.max_radius() - farthest).max(0.0))
+        Some(0.25 * self.focal.min(self.max_radius() - farthest).max(0.0))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(Self { from: self.to, to: self.from, f: self.f1, f1: self.f, ..*self }))
+        Some(Arc::new(Self { from: self.to, to: self.from, focal: self.new_focal, new_focal: self.focal, ..*self }))
     }
 }
 

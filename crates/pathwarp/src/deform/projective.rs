@@ -38,7 +38,7 @@ impl Projective {
         let FourToFour { from, to, frame } = self.corners;
         self.corners.check()?;
         let map = anchors::projective("target", from, to)?;
-        let map = anchors::settled(Arc::new(map), frame);
+        let map = anchors::simplified(Arc::new(map), frame);
         Ok(self.corners.shown_on(Built::new(map)))
     }
 }

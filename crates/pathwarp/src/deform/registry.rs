@@ -57,7 +57,6 @@ impl Registry {
     }
 }
 
-/// Every file in `src/deform/` is an entry, and names are unique.
 #[cfg(test)]
 mod tests {
     use super::Registry;
@@ -115,7 +114,7 @@ mod tests {
             "Formulas",
             "Basics",
         ];
-        // New headings come at the end.
+        // Other headings come after these.
         assert_eq!(headings[..expected.len()], expected);
         let mut titles: Vec<&str> = infos.iter().map(|i| i.title).collect();
         titles.sort_unstable();

@@ -2,8 +2,8 @@
 //!
 //! In the formula of [`Wave`], s = (p − o)·d with the unit vector d along the wave, and n is a quarter turn to its left on the screen for a
 //! shear, or d for a push. With g = 1 the wave grows from nothing, like a flag at its pole. The shear keeps s: its determinant is 1, and
-//! its inverse is the wave with −h. A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, has such waves as profiles
-//! of offsets along an axis.
+//! its inverse is the wave with −h. A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, offsets points by a
+//! function of their position along an axis; the wave is one.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;
@@ -64,7 +64,7 @@ impl Wave {
         let extent = along.into_iter().fold(f64::NEG_INFINITY, f64::max) - start;
         let map = WaveMap {
             d,
-            to: if push { d } else { Vec2::new(d.y, -d.x) },
+            towards: if push { d } else { Vec2::new(d.y, -d.x) },
             origin: start,
             wave: TAU / length,
             phase: self.phase.to_radians(),
@@ -134,7 +134,7 @@ struct WaveMap {
     /// The unit vector d along the wave.
     d: Vec2,
     /// The unit vector along which points move: n or d.
-    to: Vec2,
+    towards: Vec2,
     /// o·d, the position of the artwork's start along the wave.
     origin: f64,
     /// 2π/λ.
@@ -153,7 +153,7 @@ impl Formula for WaveMap {
         let s = x * self.d.x + y * self.d.y - self.origin;
         let a = (s * self.grow + self.initial) * self.height;
         let distance = a * (s * self.wave + self.phase).sin();
-        (x + distance * self.to.x, y + distance * self.to.y)
+        (x + distance * self.towards.x, y + distance * self.towards.y)
     }
 
     fn class(&self) -> Class {
@@ -162,7 +162,7 @@ impl Formula for WaveMap {
 
     /// A shear keeps s, so its offset can be subtracted again.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        let is_shear = self.d.dot(self.to) == 0.0;
+        let is_shear = self.d.dot(self.towards) == 0.0;
         is_shear.then(|| Arc::new(Self { height: -self.height, ..self.clone() }) as Arc<dyn Map>)
     }
 }

@@ -29,7 +29,7 @@ pub trait Searches {
 }
 
 impl<'a> Cost<'a> {
-    /// The cost of a bicubic net.
+    /// The cost of evaluating a bicubic net, the unit of all costs.
     pub const NET: Self = Self::new(1.0);
 
     /// The cost of a map whose evaluation takes `work`.

@@ -35,18 +35,18 @@ pub trait Callee: Send + Sync {
     /// Any [`Error`] by which the callee fails. The map is undefined everywhere from then on, and reports this error.
     fn ask(&self, ask: Ask, points: &[Point]) -> Result<Vec<f64>, Error>;
 
-    /// Answers for the values at `points` and the jets at `others`, neither of them empty.
+    /// Answers for the values at `points` and the jets at `jets_at`, neither of them empty.
     ///
     /// # Errors
     /// Any [`Error`] by which the callee fails.
-    fn ask_both(&self, points: &[Point], others: &[Point]) -> Result<[Vec<f64>; 2], Error> {
-        Ok([self.ask(Ask::Points, points)?, self.ask(Ask::Jets, others)?])
+    fn ask_both(&self, points: &[Point], jets_at: &[Point]) -> Result<[Vec<f64>; 2], Error> {
+        Ok([self.ask(Ask::Points, points)?, self.ask(Ask::Jets, jets_at)?])
     }
 
     /// Returns the error for an answer at `at`, within the domain, that is not finite.
     fn not_finite(&self, at: Point) -> Error;
 
-    /// Returns the work of asking for one point, in evaluations of a net.
+    /// Returns the work of asking for one point, in evaluations of a bicubic net.
     fn work(&self) -> f64 {
         2.0
     }
@@ -99,7 +99,7 @@ impl Called {
         self.failed.get().cloned()
     }
 
-    /// Returns `true` if the map may be undefined at points that are known only by their values.
+    /// Returns `true` if the map may be undefined at points that no declared crease excludes, which only its values show.
     #[must_use]
     pub fn is_partial(&self) -> bool {
         self.abilities.partial
@@ -172,7 +172,7 @@ impl Map for Called {
         if self.abilities.jacobian {
             self.points_and_jets((&[], &mut []), (ps, out));
         } else {
-            out.copy_from_slice(&differences(ps, self.size, |ps, out| self.points(ps, out)));
+            out.copy_from_slice(&jets_by_differences(ps, self.size, |ps, out| self.points(ps, out)));
         }
     }
 
@@ -211,12 +211,12 @@ impl Batches for Called {
         }
         images.fill(UNDEFINED);
         jets.fill(Jet::UNDEFINED);
-        let (points, others) = (finite(ps), finite(qs));
-        let answers = self.answers(|callee| match (points.is_empty(), others.is_empty()) {
+        let (points, jets_at) = (finite(ps), finite(qs));
+        let answers = self.answers(|callee| match (points.is_empty(), jets_at.is_empty()) {
             (true, true) => Ok([Vec::new(), Vec::new()]),
             (false, true) => Ok([callee.ask(Ask::Points, &points)?, Vec::new()]),
-            (true, false) => Ok([Vec::new(), callee.ask(Ask::Jets, &others)?]),
-            (false, false) => callee.ask_both(&points, &others),
+            (true, false) => Ok([Vec::new(), callee.ask(Ask::Jets, &jets_at)?]),
+            (false, false) => callee.ask_both(&points, &jets_at),
         });
         if let Some([values, derivatives]) = answers {
             self.write(Ask::Points, (ps, images), &values, point);
@@ -237,7 +237,7 @@ struct OneSided {
 }
 
 impl OneSided {
-    /// The distance within which rounding may put a point on either side of a crease, as a fraction of the frame's diagonal.
+    /// The level, taken for a distance, at which rounding may put a point on either side of a crease, as a share of the frame's diagonal.
     const NEAR: f64 = 1e-11;
 
     /// Moves a point on a crease slightly towards `inside`.
@@ -252,7 +252,7 @@ impl OneSided {
         self.map.abilities.creases.items().iter().all(|c| c.level.at(p) * c.level.at(self.inside) > 0.0)
     }
 
-    /// Returns two directions from `p` for differences that cross no crease; `None` if central differences cross none.
+    /// Returns two directions from `p` in which one-sided differences cross no crease; `None` if central ones cross none, or all cross one.
     fn directions(&self, p: Point) -> Option<[Vec2; 2]> {
         let crosses_none = |d: &Vec2, share: f64| self.is_on_side(p + *d * (share * self.map.size));
         let around = (0..16).map(|k| Vec2::from_angle(f64::from(k) * (TAU / 16.0)));
@@ -358,7 +358,7 @@ const STENCIL: [(f64, f64); 8] =
     [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5)];
 
 /// Computes the jets at `ps` by differences of `values`, which evaluates many points at once. `size` is the frame's diagonal.
-fn differences(ps: &[Point], size: f64, values: impl Fn(&[Point], &mut [Point])) -> Vec<Jet> {
+fn jets_by_differences(ps: &[Point], size: f64, values: impl Fn(&[Point], &mut [Point])) -> Vec<Jet> {
     let mut out: Vec<Jet> = vec![Jet::UNDEFINED; ps.len()];
     let mut errors = vec![f64::INFINITY; ps.len()];
     let mut pending: Vec<usize> = (0..ps.len()).collect();
@@ -433,7 +433,7 @@ mod tests {
             let k = TAU / length;
             let f = |p: Point| Point::new(p.x + (k * p.y).sin() / k, p.y * 2.0 + 0.5 * (k * p.x).cos() / k);
             let ps: Vec<Point> = (0..50).map(|i| Point::new(3.7 * f64::from(i), 90.0 - 1.9 * f64::from(i))).collect();
-            let found = differences(&ps, 100.0, |ps, out| {
+            let found = jets_by_differences(&ps, 100.0, |ps, out| {
                 for (p, o) in ps.iter().zip(out) {
                     *o = f(*p);
                 }
@@ -479,7 +479,8 @@ mod tests {
 
     #[test]
     fn outside_of_the_domain_the_jet_is_undefined() {
-        let found = differences(&[Point::new(1.0, 1.0)], 1.0, |_, out| out.fill(Point::new(f64::NAN, f64::NAN)));
+        let found =
+            jets_by_differences(&[Point::new(1.0, 1.0)], 1.0, |_, out| out.fill(Point::new(f64::NAN, f64::NAN)));
         assert!(found[0].p.is_nan() && found[0].dx.is_nan());
     }
 }

@@ -294,7 +294,7 @@ pub struct Crease {
 }
 
 impl Crease {
-    /// A crease along which the derivative jumps.
+    /// A crease along which the derivative or the value jumps.
     #[must_use]
     pub fn kink(level: Level) -> Self {
         Self { level, kind: CreaseKind::Kink }

@@ -82,11 +82,11 @@ impl ArcLength {
         let mut distance = 0.0;
         // Depth first, left before right, so that distances accumulate in order.
         while let Some((a, b, depth)) = todo.pop() {
-            let last = depth >= MAX_DEPTH || spans.len() + todo.len() >= MAX_SPANS;
+            let at_limit = depth >= MAX_DEPTH || spans.len() + todo.len() >= MAX_SPANS;
             let span = Speed::new(speed, a, b, &points);
-            if last || span.tail() <= INTEGRATION_TOLERANCE * rough {
+            if at_limit || span.tail() <= INTEGRATION_TOLERANCE * rough {
                 let c = span.inverse(&points);
-                if last || c[TERMS - 2].abs() + c[TERMS - 1].abs() <= TAIL {
+                if at_limit || c[TERMS - 2].abs() + c[TERMS - 1].abs() <= TAIL {
                     let length = span.length();
                     spans.push(Span { s0: distance, s1: distance + length, u: powers(&c) });
                     distance += length;
@@ -161,7 +161,7 @@ impl Speed {
     fn new(speed: &dyn Fn(f64) -> f64, a: f64, b: f64, points: &ChebyshevPoints) -> Self {
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         let v = points.series(&from_fn(|k| speed(middle + half * points.value(1, k)) * half));
-        // The integrals are ∫T₀ = T₁ and, for j > 0, ∫Tⱼ = Tⱼ₊₁/2(j + 1) − Tⱼ₋₁/2(j − 1); the constant makes the length 0 at t = −1.
+        // ∫T₀ = T₁, ∫T₁ = T₂/4 and, for j > 1, ∫Tⱼ = Tⱼ₊₁/2(j + 1) − Tⱼ₋₁/2(j − 1); the constant makes the length 0 at t = −1.
         let mut length: [f64; TERMS + 1] = from_fn(|j| match j {
             0 => 0.0,
             1 => v[0] - 0.5 * v[2],
@@ -237,7 +237,8 @@ fn clenshaw(series: &[f64], t: f64) -> f64 {
 // A side of an envelope: consecutive curve segments with one parameter from 0 to 1.
 //
 // The parameter is proportional to arc length, to the parameters of the segments, or to the distance along an axis. Outside [0, 1]
-// a Bézier segment at the pace of its parameter continues as a polynomial; everything else continues along its end tangent.
+// a segment at the pace of its parameter continues as the same line, polynomial or ellipse. At other paces it continues along its end
+// tangent, but a curve at a pace along an axis no steeper than [`STEEPEST`].
 
 /// The meaning of equal steps of a side's parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -283,7 +284,7 @@ const MIN_LENGTH: f64 = 1e-12;
 
 impl Side {
     /// A side of these segments, each starting at the end of the previous one. `None` if they have no length, or if they turn
-    /// back from the axis of a pace along one.
+    /// back along the axis of the pace [`Width`](Pace::Width) or [`Height`](Pace::Height).
     #[must_use]
     pub fn new(segs: &[Seg], pace: Pace) -> Option<Self> {
         let measured: Vec<_> = segs.iter().map(|s| (*s, ArcLength::of_segment(s))).collect();
@@ -348,7 +349,7 @@ impl Side {
         [self.pieces[0].seg.start(), self.pieces[self.pieces.len() - 1].seg.end()]
     }
 
-    /// The index of the piece at parameter `u`.
+    /// The index of the piece at parameter `u`; at a joint, the index of the next one.
     #[must_use]
     pub fn piece(&self, u: f64) -> usize {
         self.joints().partition_point(|k| *k <= u)
@@ -384,12 +385,9 @@ impl Side {
     /// The part of a piece between two parameters of the side as a cubic; `None` if it is not polynomial.
     #[must_use]
     pub(crate) fn cubic(&self, piece: usize, a: f64, b: f64) -> Option<CubicBez> {
-        let p = &self.pieces[piece];
-        if !p.is_polynomial() {
-            return None;
-        }
-        let (from, to) = (self.knots[piece], self.knots[piece + 1]);
-        Some(p.seg.part((a - from) / (to - from), (b - from) / (to - from))?.to_cubic())
+        let (p, from, to) = (&self.pieces[piece], self.knots[piece], self.knots[piece + 1]);
+        let part = p.seg.part((a - from) / (to - from), (b - from) / (to - from));
+        part.filter(|_| p.is_polynomial()).map(|part| part.to_cubic())
     }
 
     /// The largest distance of the side from its chord, and the point where it occurs.
@@ -488,12 +486,12 @@ impl SidePiece {
 
 // Guide curves of ruled maps: consecutive segments with one parameter from 0 to 1.
 
-/// The parameter of a guide.
+/// The meaning of equal steps of a guide's parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Along {
-    /// Proportional to arc length.
+pub(crate) enum GuidePace {
+    /// Equal distances along the guide.
     ArcLength,
-    /// The parameters of the segments, each of which has an equal share of [0, 1].
+    /// Equal steps of each segment's parameter; segments have equal shares of [0, 1].
     Parameter,
 }
 
@@ -517,14 +515,14 @@ pub(in crate::map) struct GuidePiece {
 impl Guide {
     /// A guide of consecutive segments. `None` if there are no segments, or they have no length.
     #[must_use]
-    pub(crate) fn new(segs: &[Seg], along: Along) -> Option<Self> {
+    pub(crate) fn new(segs: &[Seg], pace: GuidePace) -> Option<Self> {
         let mut lengths = Vec::with_capacity(segs.len());
         let mut tables = Vec::with_capacity(segs.len());
         for seg in segs {
             let table = ArcLength::of_segment(seg);
-            lengths.push(if along == Along::ArcLength { table.length() } else { 1.0 });
+            lengths.push(if pace == GuidePace::ArcLength { table.length() } else { 1.0 });
             // The parameter of a line is proportional to its length.
-            let proportional = along == Along::Parameter || matches!(seg, Seg::Line(_));
+            let proportional = pace == GuidePace::Parameter || matches!(seg, Seg::Line(_));
             tables.push((!proportional).then_some(table));
         }
         let total: f64 = lengths.iter().sum();
@@ -548,7 +546,7 @@ impl Guide {
         Some(Self { pieces })
     }
 
-    /// The point at `u`. The outermost pieces continue beyond the ends.
+    /// The point at `u`. Beyond the ends, the outermost segments continue as the same curves, at the speed of their ends.
     #[cfg(test)]
     pub(in crate::map) fn eval(&self, u: f64) -> Point {
         self.piece(u).point(u)
@@ -559,7 +557,7 @@ impl Guide {
         self.pieces.iter().skip(1).map(|p| p.from)
     }
 
-    /// The piece at `u`.
+    /// The piece at `u`; at a joint, the previous one.
     pub(in crate::map) fn piece(&self, u: f64) -> &GuidePiece {
         let k = self.pieces.partition_point(|p| p.to < u).min(self.pieces.len() - 1);
         &self.pieces[k]

@@ -34,7 +34,7 @@
 //!
 //! [`warp_path`]: crate::refit::warp_path
 
-/// Forwards the methods that a [`Map`] and a [`Formula`] have in common, except the inverse and the cost.
+/// Forwards the methods of the same name in [`Map`] and [`Formula`], except the inverse and the cost, which wrappers of maps change.
 macro_rules! forward_common {
     ($self:ident => $trait:ident, $to:expr) => {
         fn class(&$self) -> Class {
@@ -157,7 +157,7 @@ pub use projective::AffineMap;
 pub use rational_bezier::{RationalBezier, exact_images};
 pub use real::{Dual, Real};
 
-pub(crate) use curves::{Along, Guide, increasing_root};
+pub(crate) use curves::{Guide, GuidePace, increasing_root};
 pub(crate) use local::Local;
 pub(crate) use newton::{INVERSE_WORK, inverse_of};
 pub(crate) use patch::{Patch, powers};
@@ -237,9 +237,9 @@ pub trait Map: Send + Sync {
         Cost::NET
     }
 
-    /// Encloses the image of a curve whose coordinates are enclosed: the refitter accepts a piece only if nothing can hide between its
-    /// samples. By default estimated from the [`detail`](Self::detail). `None` if there are no bounds; the fit is then reported as
-    /// [sampled](bezierfit::Assurance::Sampled).
+    /// Bounds the coordinates of a curve's image and their derivatives by those of the curve: the refitter accepts a piece only if nothing
+    /// can hide between its samples. By default estimated from the [`detail`](Self::detail). `None` if there are no bounds; the fit is then
+    /// reported as [sampled](bezierfit::Assurance::Sampled).
     fn enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
         let area = Enclosure::area(&along);
         self.detail(area).map(|detail| estimated(self, along, area, detail))
@@ -276,9 +276,9 @@ fn most_stretched(jets: &[Jet]) -> f64 {
 pub(crate) fn detail_in(map: &dyn Map, area: Rect) -> Option<f64> {
     let enclosed = || {
         let middle = area.center();
-        let finest = |line: [Enclosure; 2], length: f64| Some(length * Enclosure::finest(&map.enclose(line)?));
-        let across = finest([Enclosure::between(area.x0, area.x1), middle.y.into()], area.width())?;
-        Some(across.min(finest([middle.x.into(), Enclosure::between(area.y0, area.y1)], area.height())?))
+        let finest_on = |line: [Enclosure; 2], length: f64| Some(length * Enclosure::finest_share(&map.enclose(line)?));
+        let across = finest_on([Enclosure::between(area.x0, area.x1), middle.y.into()], area.width())?;
+        Some(across.min(finest_on([middle.x.into(), Enclosure::between(area.y0, area.y1)], area.height())?))
     };
     map.detail(area).or_else(enclosed)
 }
@@ -292,7 +292,7 @@ impl dyn Map + '_ {
         self.cost().work
     }
 
-    /// This map with its searches charged to `budget`; `None` if it does not search.
+    /// This map with its searches, such as an inverse's, charged to `budget`; `None` if it does not search.
     #[doc(hidden)]
     #[must_use]
     pub fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {

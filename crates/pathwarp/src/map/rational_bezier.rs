@@ -145,8 +145,8 @@ impl RationalBezier {
     }
 }
 
-/// The exact image of a segment, of the lowest degree that its coordinates allow: one curve for each part between the creases of the map.
-/// `None` if a part has no such image ([`Map::image`]).
+/// The exact image of a segment, of the lowest degree that its coordinates allow: one curve for each part between the creases of the map
+/// and, of an arc, between its quarters. `None` if a part has no such image ([`Map::image`]).
 ///
 /// ```
 /// use pathwarp::kurbo::{Line, Rect, Vec2};
@@ -166,6 +166,7 @@ pub fn exact_images(map: &dyn Map, seg: &Seg) -> Option<Vec<RationalBezier>> {
     let mut cuts = [vec![0.0, 1.0], quarters, Creases::of_map(map).splits(seg)].concat();
     cuts.sort_by(f64::total_cmp);
     let image = |w: &[f64]| {
+        // `Seg::part` has no parts of arcs. A crease at a quarter gives a part of length 0.
         let part = match seg {
             Seg::Arc(arc) => Seg::Arc(arc.subsegment(w[0], w[1])),
             _ => seg.part(w[0], w[1])?,

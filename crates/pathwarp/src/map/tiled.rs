@@ -330,13 +330,14 @@ impl Map for RuledMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{Along, RationalDegree};
+    use crate::map::GuidePace::{self, ArcLength, Parameter};
+    use crate::map::RationalDegree;
     use crate::outline::{EllipticArc, Outline, Seg};
     use kurbo::{ParamCurve, ParamCurveArclen, Vec2};
 
-    fn guide(d: &str, along: Along) -> Guide {
+    fn guide(d: &str, pace: GuidePace) -> Guide {
         let segs: Vec<Seg> = Outline::from_svg(d).unwrap().segs().copied().collect();
-        Guide::new(&segs, along).unwrap()
+        Guide::new(&segs, pace).unwrap()
     }
 
     const FRAME: Rect = Rect::new(10.0, 20.0, 110.0, 70.0);
@@ -354,13 +355,13 @@ mod tests {
     fn sides_are_the_guides_and_verticals_are_straight() {
         let top = "M0,0 C30,-40 70,40 100,0 L150,-20";
         let bottom = "M-10,60 L40,80 Q90,90 160,50";
-        for along in [Along::ArcLength, Along::Parameter] {
-            let (t, b) = (guide(top, along), guide(bottom, along));
+        for pace in [ArcLength, Parameter] {
+            let (t, b) = (guide(top, pace), guide(bottom, pace));
             let m = ruled(&t, &b);
             for i in -2..=22 {
                 let u = f64::from(i) / 20.0;
                 let (p, q) = (m.point(source(u, 0.0)), m.point(source(u, 1.0)));
-                assert!(p.distance(t.eval(u)) < 1e-9 && q.distance(b.eval(u)) < 1e-9, "{along:?} {u}");
+                assert!(p.distance(t.eval(u)) < 1e-9 && q.distance(b.eval(u)) < 1e-9, "{pace:?} {u}");
                 for v in [-0.3, 0.25, 0.5, 0.9] {
                     assert!(m.point(source(u, v)).distance(p.lerp(q, v)) < 1e-10);
                 }
@@ -370,7 +371,7 @@ mod tests {
                 let (p, j) = (source(u, v), m.jet(source(u, v)));
                 let dx = (m.point(p + (h, 0.0)) - m.point(p - (h, 0.0))) / (2.0 * h);
                 let dy = (m.point(p + (0.0, h)) - m.point(p - (0.0, h))) / (2.0 * h);
-                assert!((dx - j.dx).hypot() < 1e-6 && (dy - j.dy).hypot() < 1e-6, "{along:?} {u} {v}: {j:?} {dx} {dy}");
+                assert!((dx - j.dx).hypot() < 1e-6 && (dy - j.dy).hypot() < 1e-6, "{pace:?} {u} {v}: {j:?} {dx} {dy}");
             }
         }
     }
@@ -379,7 +380,7 @@ mod tests {
     #[test]
     fn arc_length_is_the_share_of_the_length() {
         let c = CubicBez::new((0.0, 0.0), (10.0, 60.0), (20.0, -30.0), (120.0, 10.0));
-        let g = Guide::new(&[Seg::Cubic(c)], Along::ArcLength).unwrap();
+        let g = Guide::new(&[Seg::Cubic(c)], ArcLength).unwrap();
         let total = c.arclen(1e-12);
         for i in 0..=20 {
             let t = f64::from(i) / 20.0;
@@ -387,19 +388,19 @@ mod tests {
             assert!(g.eval(u).distance(c.eval(t)) < 1e-8, "{t}");
         }
         // Segments share [0, 1] in proportion to their lengths, so one without length has no share.
-        let g = guide("M0,0 L30,0 L30,0 L30,10", Along::ArcLength);
+        let g = guide("M0,0 L30,0 L30,0 L30,10", ArcLength);
         assert_eq!(g.joints().collect::<Vec<_>>(), [0.75]);
         assert!(g.eval(0.875).distance((30.0, 5.0).into()) < 1e-12);
-        assert!(Guide::new(&[], Along::ArcLength).is_none());
+        assert!(Guide::new(&[], ArcLength).is_none());
         let dot = Seg::Line(kurbo::Line::new((3.0, 3.0), (3.0, 3.0)));
-        assert!(Guide::new(&[dot], Along::ArcLength).is_none() && Guide::new(&[dot], Along::Parameter).is_none());
+        assert!(Guide::new(&[dot], ArcLength).is_none() && Guide::new(&[dot], Parameter).is_none());
     }
 
     /// Strips between polynomial guides are nets, so that images are exact and certified. Joints are vertical creases.
     #[test]
     fn polynomial_strips_are_nets() {
-        let roof = guide("M0,20 L50,0 L100,20", Along::ArcLength);
-        let floor = guide("M0,50 Q50,70 100,50", Along::Parameter);
+        let roof = guide("M0,20 L50,0 L100,20", ArcLength);
+        let floor = guide("M0,50 Q50,70 100,50", Parameter);
         let m = ruled(&roof, &floor);
         let creases = Creases::of_map(&m);
         assert_eq!(creases.items().len(), 1);
@@ -412,14 +413,13 @@ mod tests {
         // On a circle, angle and arc length give the same guide.
         let arc =
             [Seg::Arc(EllipticArc::new(Point::new(50.0, 0.0), Vec2::new(40.0, 0.0), Vec2::new(0.0, 40.0), 3.2, 2.9))];
-        let [a, b] = [Along::ArcLength, Along::Parameter].map(|l| Guide::new(&arc, l).unwrap());
+        let [a, b] = [ArcLength, Parameter].map(|l| Guide::new(&arc, l).unwrap());
         assert!((0..=10).all(|i| a.eval(f64::from(i) / 10.0).distance(b.eval(f64::from(i) / 10.0)) < 1e-9));
     }
 
     #[test]
     fn the_inverse_returns_in_every_strip() {
-        let (t, b) =
-            (guide("M0,20 L50,0 L100,20", Along::ArcLength), guide("M0,50 C30,80 60,30 100,60", Along::ArcLength));
+        let (t, b) = (guide("M0,20 L50,0 L100,20", ArcLength), guide("M0,50 C30,80 60,30 100,60", ArcLength));
         let m = ruled(&t, &b);
         let back = m.inverse().unwrap();
         for (u, v) in [(0.1, 0.1), (0.49, 0.9), (0.5, 0.5), (0.51, 0.2), (0.97, 0.99), (1.2, 0.5)] {

@@ -49,7 +49,7 @@ impl Subpath {
     pub fn with_handles(&self) -> Vec<[Point; 3]> {
         let to_cubics = |g: &Seg| match g {
             Seg::Line(l) => vec![CubicBez::new(l.p0, l.p0, l.p1, l.p1)],
-            Seg::Arc(a) => a.to_cubics(a.a.hypot().max(a.b.hypot()) * 1e-3).collect(),
+            Seg::Arc(arc) => arc.to_cubics(arc.a.hypot().max(arc.b.hypot()) * 1e-3).collect(),
             other => vec![other.to_cubic()],
         };
         let cubics: Vec<CubicBez> = self.segs.iter().flat_map(to_cubics).collect();
@@ -77,7 +77,7 @@ impl Subpath {
     pub fn bounding_box(&self) -> Rect {
         let point = |p: Point| Rect::from_points(p, p);
         let ends = self.segs.iter().map(Seg::end).fold(point(self.start), |b, p| b.union(point(p)));
-        // The extremes of most segments lie inside the box of all ends.
+        // Most segments lie in the box of all ends already; only the others need their extremes.
         self.segs.iter().fold(ends, |b, g| g.extend(b))
     }
 
@@ -158,7 +158,7 @@ impl Outline {
     pub fn bounding_box(&self) -> Option<Rect> {
         let ends = self.subpaths.iter().flat_map(|s| s.segs.iter().map(Seg::end).chain([s.start]));
         let ends = ends.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))?;
-        // The extremes of most segments lie inside the box of all ends.
+        // Most segments lie in the box of all ends already; only the others need their extremes.
         Some(self.segs().fold(ends, |b, g| g.extend(b)))
     }
 
@@ -334,15 +334,15 @@ impl Seg {
         }
     }
 
-    /// Returns the largest magnitude of a control point's coordinates; for an arc, an upper bound for its coordinates.
+    /// Returns the largest magnitude of a control point's coordinates; for an arc, a bound by its center and conjugate semi-axes.
     #[must_use]
     pub fn extent(&self) -> f64 {
-        let all = |points: &[Point]| points.iter().fold(0.0, |max: f64, p| max.max(p.x.abs()).max(p.y.abs()));
+        let largest = |points: &[Point]| points.iter().fold(0.0, |max: f64, p| max.max(p.x.abs()).max(p.y.abs()));
         match self {
-            Self::Line(s) => all(&[s.p0, s.p1]),
-            Self::Quad(s) => all(&[s.p0, s.p1, s.p2]),
-            Self::Cubic(s) => all(&[s.p0, s.p1, s.p2, s.p3]),
-            Self::Arc(s) => all(&[s.center]) + s.a.hypot() + s.b.hypot(),
+            Self::Line(s) => largest(&[s.p0, s.p1]),
+            Self::Quad(s) => largest(&[s.p0, s.p1, s.p2]),
+            Self::Cubic(s) => largest(&[s.p0, s.p1, s.p2, s.p3]),
+            Self::Arc(arc) => largest(&[arc.center]) + arc.a.hypot() + arc.b.hypot(),
         }
     }
 

@@ -38,7 +38,7 @@ impl Overview {
         let mut out = Self { origin: area.origin(), side, columns, rows, cells: Vec::with_capacity(columns * rows) };
         for cell in 0..columns * rows {
             // The cell and one side around it, as the range of v in v + hτ and v − hτ.
-            let range = |origin: f64, i: usize| Enclosure::slope(origin + side * (i as f64 + 0.5), [1.5 * side, side]);
+            let range = |origin: f64, i: usize| Enclosure::sloped(origin + side * (i as f64 + 0.5), [1.5 * side, side]);
             let [x, y] = map.enclose([range(area.x0, cell % columns), range(area.y0, cell / columns)])?;
             out.cells.push(std::array::from_fn(|k| x.d[k] + y.d[k]));
         }

@@ -27,7 +27,7 @@ pub(super) struct Picture {
 /// The pixels that differ, as fractions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gap {
-    /// Fraction of the page.
+    /// Fraction of all pixels of the picture.
     pub(super) of_page: f64,
     /// Fraction of the painted pixels.
     pub(super) of_ink: f64,
@@ -126,23 +126,23 @@ impl Picture {
     /// `found`.
     fn warped(&self, bend: Bend, page: [usize; 2], found: &Self) -> (Self, Vec<bool>) {
         let mut data = found.data.clone();
-        let mut known = vec![false; self.width * self.height];
+        let mut comparable = vec![false; self.width * self.height];
         let is_on_page = |x: usize, y: usize, edge: usize| {
             [x, y].into_iter().zip(page).all(|(c, side)| c >= edge && c + edge < side)
         };
-        for (i, is_known) in known.iter_mut().enumerate() {
+        for (i, is_comparable) in comparable.iter_mut().enumerate() {
             let (x, y) = (i % self.width, i / self.width);
             if let Some((from_x, from_y)) = bend.source(x, y).filter(|(x, y)| is_on_page(*x, *y, 0)) {
                 let from = 4 * (from_y * self.width + from_x);
                 data[4 * i..4 * i + 4].copy_from_slice(&self.data[from..from + 4]);
-                // A shift moves nothing across the upper and lower edges, but may bring in hidden content from beyond the left edge.
-                *is_known = match bend {
+                // A shift moves nothing across the upper and lower edges, but brings in hidden columns from the left: `by`, and a margin.
+                *is_comparable = match bend {
                     Bend::Shift(by) => x >= 2 * by + EDGE && x + EDGE < page[0],
                     Bend::Curve { .. } => is_on_page(x, y, EDGE) && is_on_page(from_x, from_y, EDGE),
                 };
             }
         }
-        (Self { width: self.width, height: self.height, data }, known)
+        (Self { width: self.width, height: self.height, data }, comparable)
     }
 
     /// Returns `true` if a pixel is outside the range of colours that `other` has near it.
@@ -164,20 +164,20 @@ impl Picture {
     }
 }
 
-/// Compares the picture of a result with the image of the original picture under the map. `page` is the extent of the drawing's page.
-/// Also returns `true` for every pixel that differs.
+/// Compares the picture of a result with the image of the original picture, of the same size, under the map. `page` is the extent of the
+/// drawing's page. Also returns `true` for every pixel that differs.
 pub(super) fn compare(original: &Picture, found: &Picture, bend: Bend, page: [usize; 2]) -> (Gap, Vec<bool>) {
     let page = [page[0].min(found.width), page[1].min(found.height)];
     let soft = matches!(bend, Bend::Curve { .. }).then(|| [original.softened(), found.softened()]);
     let [original, found] = soft.as_ref().map_or([original, found], |[o, f]| [o, f]);
-    let (expected, known) = original.warped(bend, page, found);
+    let (expected, comparable) = original.warped(bend, page, found);
     let apart = |i: usize| (4 * i..4 * i + 4).any(|k| expected.data[k].abs_diff(found.data[k]) > VISIBLE);
-    let marks: Vec<bool> = (0..known.len())
-        .map(|i| known[i] && apart(i) && (expected.stands_out(found, i) || found.stands_out(&expected, i)))
+    let marks: Vec<bool> = (0..comparable.len())
+        .map(|i| comparable[i] && apart(i) && (expected.stands_out(found, i) || found.stands_out(&expected, i)))
         .collect();
     let differing = marks.iter().filter(|m| **m).count();
     let painted = |i: usize| expected.data[4 * i + 3] > VISIBLE || found.data[4 * i + 3] > VISIBLE;
-    let ink = (0..known.len()).filter(|i| known[*i] && painted(*i)).count();
+    let ink = (0..comparable.len()).filter(|i| comparable[*i] && painted(*i)).count();
     let of_ink = if differing < MIN_PIXELS { 0.0 } else { differing as f64 / ink.max(1) as f64 };
     (Gap { of_page: differing as f64 / (found.width * found.height) as f64, of_ink }, marks)
 }

@@ -84,7 +84,7 @@ impl Figures {
 }
 
 /// The text of the page.
-fn text(root: &Path) -> Result<String, ChoreError> {
+fn page_text(root: &Path) -> Result<String, ChoreError> {
     let mut out = String::from(
         "# A word in a shape\n\n<!-- Written by `cargo xtask docs`; edit crates/xtask/src/docs/shapes.rs. -->\n\n\
 ```sh\npathwarp text OPEN --in leaf -o leaf.svg\n```\n\n\
@@ -96,8 +96,8 @@ options of `text`; `text … | pathwarp envelope - --envelope SHAPE` is the same
 the word between its four sides. Every other shape is filled as letterers do it: in columns, so that stems stay upright, between the lower \
 and the upper outline. The letters end where the shape is still a quarter of its greatest height (`--ends`), and `--padding 3` keeps them \
 off the outline. `--explain` says what was chosen; `--keep verticals` or `--keep nothing` overrules it.\n\n\
-Several lines, told by their baselines, are each set to the width of the shape at their height: `text LOVE MUSIC ALWAYS --in heart`. The \
-gaps between them are even, stems stand, and letters are about equally high and wide. At a notch a line follows it, or parts. Short words are not stretched without \
+Several lines, recognised by their baselines, are each set to the width of the shape at their height: `text LOVE MUSIC ALWAYS --in heart`. The \
+gaps between them are even, stems stand, and letters are about equally high and wide. At a notch a line follows the outline, or is divided. Short words are not stretched without \
 limit, but spaced. Where a shape has no room for a line, as the crescent has none for four, the program names it. `envelope --lines together` bends all lines as one block. \
 Artwork without letters takes whatever distorts it \
 less, and goes from end to end.\n",
@@ -108,7 +108,7 @@ less, and goes from end to end.\n",
     }
     out.push_str(
         "\n## Figures\n\nFor a word three times as wide as high: the share of it that is folded over, the largest lean of a stem, and the \
-95th percentile of how much more a place is stretched one way than the other, beside the mean of both.\n\n\
+95th percentile of the ratio of the largest to the smallest stretch at a place, after the mean stretch along each axis is taken out.\n\n\
 | shape | filled | folded | stems lean | stretch |\n|---|---|---|---|---|\n",
     );
     for (name, path) in shapes(root)? {
@@ -122,7 +122,7 @@ less, and goes from end to end.\n",
 /// Writes the page and its pictures.
 pub(super) fn write(root: &Path, program: &Path) -> Result<(), ChoreError> {
     let page = root.join(PAGE);
-    fs::write(&page, text(root)?).map_err(at(&page))?;
+    fs::write(&page, page_text(root)?).map_err(at(&page))?;
     let folder = root.join(PICTURES);
     fs::create_dir_all(&folder).map_err(at(&folder))?;
     for (name, command) in ARTWORK {
@@ -135,7 +135,7 @@ pub(super) fn write(root: &Path, program: &Path) -> Result<(), ChoreError> {
             let args = ["envelope", "-", "--envelope", &path, "--fit", "grow", "--quiet", "-o", "-"].map(str::to_owned);
             let bent = String::from_utf8_lossy(&pipe(root, program, &args, &artwork)?).into_owned();
             let _ = write!(sheet, "<image {WHOLE} href=\"data:image/svg+xml;base64,");
-            sheet.push_str(&BASE64_STANDARD.encode(on_the_sheet(&bent)));
+            sheet.push_str(&BASE64_STANDARD.encode(with_sheet_page(&bent)));
             sheet.push_str("\"/>");
         }
         sheet.push_str("</svg>");
@@ -148,7 +148,7 @@ pub(super) fn write(root: &Path, program: &Path) -> Result<(), ChoreError> {
 const WHOLE: &str = "width=\"1440\" height=\"960\"";
 
 /// Gives a drawing the page of the drawing of all shapes.
-fn on_the_sheet(drawing: &str) -> String {
+fn with_sheet_page(drawing: &str) -> String {
     let Some((before, rest)) = drawing.split_once("<svg ") else { return drawing.to_owned() };
     let (tag, content) = rest.split_once('>').unwrap_or((rest, ""));
     let kept = |part: &&str| !["width=", "height=", "viewBox="].iter().any(|name| part.starts_with(name));
@@ -177,6 +177,6 @@ mod tests {
     fn the_page_is_up_to_date() {
         let root = workspace();
         let stored = fs::read_to_string(root.join(PAGE)).unwrap_or_default();
-        assert!(stored == text(&root).unwrap(), "{PAGE} is out of date: run `cargo xtask docs`");
+        assert!(stored == page_text(&root).unwrap(), "{PAGE} is out of date: run `cargo xtask docs`");
     }
 }

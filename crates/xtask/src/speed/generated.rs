@@ -20,23 +20,23 @@ impl Random {
     }
 }
 
-/// A drawing of `n` smooth cubic segments, `each` to a path: flowers r(φ) = R·(1 + a·cos(kφ + p)) with random a and p.
-pub(super) fn flowers(n: usize, each: usize) -> String {
+/// A drawing of `n` smooth cubic segments, `per_path` to a path: flowers r(φ) = R·(1 + a·cos(kφ + p)) with random a and p.
+pub(super) fn flowers(n: usize, per_path: usize) -> String {
     let mut random = Random(SEED);
-    let paths = n.div_ceil(each.max(1));
+    let paths = n.div_ceil(per_path.max(1));
     let columns = (paths as f64).sqrt().ceil();
     let cell = SIZE / columns;
     let mut out = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {SIZE} {SIZE}'>\n");
     for k in 0..paths {
-        let count = each.min(n - k * each);
+        let count = per_path.min(n - k * per_path);
         let (x, y) = (((k as f64 % columns) + 0.5) * cell, ((k as f64 / columns).floor() + 0.5) * cell);
         let (a, phase) = (0.1 + 0.2 * random.next(), TAU * random.next());
         let petals = (count as f64 / PER_PETAL).ceil().max(3.0);
-        // The point at φ = 2πi/count, and a third of the derivative by i.
+        // The point at φ = 2πi/count and the handle there, a third of the derivative by i. Petals stay within 0.38·1.3 of a cell.
         let at = |i: usize| {
             let phi = TAU * i as f64 / count as f64;
-            let (wave, slope) = (petals * phi + phase).sin_cos();
-            let (r, dr) = (0.38 * cell * (1.0 + a * slope), -0.38 * cell * a * petals * wave);
+            let (wave_sin, wave_cos) = (petals * phi + phase).sin_cos();
+            let (r, dr) = (0.38 * cell * (1.0 + a * wave_cos), -0.38 * cell * a * petals * wave_sin);
             let ((s, c), handle) = (phi.sin_cos(), TAU / count as f64 / 3.0);
             ([x + r * c, y + r * s], [(dr * c - r * s) * handle, (dr * s + r * c) * handle])
         };

@@ -92,7 +92,7 @@ impl Work<'_> {
     }
 }
 
-/// Fails if searches for an inverse have exceeded the limit. This takes precedence over any result or other error of the map.
+/// Fails if searches for an inverse have exceeded the limit. Results and other errors of the map are wrong then.
 fn check_searches(name: &str, built: &BuiltRecipe3) -> Result<(), Failure> {
     built.exceeded().map_or(Ok(()), |e| Err(too_much(name, &e)))
 }
@@ -103,14 +103,13 @@ fn too_much(name: &str, e: &Exceeded) -> Failure {
 }
 
 /// Returns the failure of a point without image.
-fn undefined(name: &str, what: &str, DVec3 { x, y, z }: DVec3) -> Failure {
+fn no_image(name: &str, what: &str, DVec3 { x, y, z }: DVec3) -> Failure {
     Failure::Geometry(format!(
         "{name}: {what} at {x:.6},{y:.6},{z:.6} has no image: the map is infinite or undefined there; move its control points \
          less, or choose another eye or region"
     ))
 }
 
-/// Formats a point for a message.
 fn coordinates(p: DVec3) -> String {
     format!("{:.6},{:.6},{:.6}", p.x, p.y, p.z)
 }
@@ -137,16 +136,16 @@ pub(super) fn bend_mesh(work: &Work<'_>, job: &Job, source: MeshSource, budget: 
     let (frame, built) = work.build(&name, mesh.bounds(), &mesh.positions, budget)?;
     if let Some(length) = work.solid.refine {
         let within = length.in_units(Axis::X, &frame.front());
-        refine(&mut mesh, &built.map, within, budget).map_err(|e| match (unread(&name, &e), &e.problem) {
-            (Failure::Input(message), MeshFault::Limit(_)) => {
-                Failure::Input(message.replacen("; if", "; allow a larger --refine, or if", 1))
+        refine(&mut mesh, &built.map, within, budget).map_err(|e| match &e.problem {
+            MeshFault::Limit(exceeded) => {
+                Failure::Input(format!("{name}: {e}; allow a larger --refine, or {}", advice::raise(exceeded)))
             }
-            (other, _) => other,
+            _ => unread(&name, &e),
         })?;
     }
     let deformed = deform(&mut mesh, &built.map);
     check_searches(&name, &built)?;
-    let deformed = deformed.map_err(|e| undefined(&name, &format!("vertex {}", e.vertex + 1), e.at))?;
+    let deformed = deformed.map_err(|e| no_image(&name, &format!("vertex {}", e.vertex + 1), e.at))?;
 
     let mut warnings: Vec<String> = mesh.left_out.iter().map(|what| format!("left out: {what}")).collect();
     let partial = !warnings.is_empty();
@@ -299,7 +298,7 @@ fn surface_notes(deformed: &DeformedPatches, format: ModelFormat, all: usize) ->
 /// Returns the failure to deform surfaces.
 fn patch_failure(name: &str, e: &PatchError) -> Failure {
     match e {
-        PatchError::Undefined { surface, at } => undefined(name, &format!("surface {}", surface + 1), *at),
+        PatchError::Undefined { surface, at } => no_image(name, &format!("surface {}", surface + 1), *at),
         PatchError::Limit(e) => surfaces_too_much(name, e),
     }
 }
@@ -347,6 +346,7 @@ struct Preview<'a> {
 
 impl<'a> Preview<'a> {
     fn of([before, after]: [&'a Mesh; 2], built: &'a BuiltRecipe3) -> Self {
+        // Guides of earlier steps do not lie in the space of the result.
         let guides = built.steps.last().map_or(&[][..], |s| &s.guides);
         Self { before, after, guides, eye: built.steps.iter().find_map(|s| s.eye) }
     }

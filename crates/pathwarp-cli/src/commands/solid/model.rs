@@ -247,7 +247,7 @@ fn read_drawing(bytes: &[u8], file: &Path, reading: &Reading, depth: f64) -> Res
     let mut shapes = Vec::new();
     let mut add = |name: &str, outline: &Outline, even_odd: bool| -> Result<(), Failure> {
         let flat = artwork::flat(&NamedShape { name, outline, even_odd }, tolerance, doc.budget())
-            .map_err(|e| Failure::Geometry(format!("{}: {}", input::display(file), advice::surface(&e))))?;
+            .map_err(|e| Failure::Geometry(format!("{}: {}", input::display(file), advice::surface_message(&e))))?;
         if !flat.triangles.is_empty() {
             let points = flat.points.iter().map(|p| to_mm * *p).map(|p| [p.x, p.y]).collect();
             shapes.push(FlatShape { name: name.to_owned(), points, triangles: flat.triangles });

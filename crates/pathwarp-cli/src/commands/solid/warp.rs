@@ -62,7 +62,7 @@ fn plan(
     from: Option<&Path>,
 ) -> Result<Vec<Job>, Failure> {
     /// Corrects the name of an output in a folder: from a drawing, an OBJ model is made.
-    fn result(target: PathBuf) -> PathBuf {
+    fn corrected_name(target: PathBuf) -> PathBuf {
         let is_drawing = matches!(Format::of(&target), Some(Format::Svg | Format::Svgz));
         if is_drawing { target.with_extension("obj") } else { target }
     }
@@ -70,7 +70,7 @@ fn plan(
     if files.is_empty() {
         files.push(InputFile::named("-"));
     }
-    Inputs { files: &files, kind: "model", replaceable: false, result }.plan(registry, recipe, options, from)
+    Inputs { files: &files, kind: "model", replaceable: false, corrected_name }.plan(registry, recipe, options, from)
 }
 
 impl Work<'_> {

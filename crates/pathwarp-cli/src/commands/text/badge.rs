@@ -39,23 +39,27 @@ pub(super) const FONT: &str = "display";
 const SEPARATOR: &str = "separator";
 const PARAMS: &[Param] = &[Param::path(SEPARATOR, "")];
 
-/// Width of a ring line as a share of half the badge's width; width of a thin line beside it, and the gap between them, as shares of that.
+/// Width of a ring line as a share of half the badge's width.
 const LINE: f64 = 0.026;
+/// Width of a thin line beside a ring line, and the gap between them, as shares of [`LINE`].
 const THIN: f64 = 0.4;
 const LINE_GAP: f64 = 0.9;
-/// The widest band as a share of half the badge's width, around a circle and around other shapes; and the least share of it for long lines.
+/// The widest band as a share of half the badge's width, around a circle and around other shapes.
 const BAND: [f64; 2] = [0.36, 0.31];
+/// The narrowest band, for long lines, as a share of the widest.
 const LEAST_BAND: f64 = 0.45;
 /// Height of capitals, and the largest distance of any letter from the middle, as shares of the band.
 const CAPITALS: f64 = 0.54;
 const LETTER_DISTANCE: f64 = 0.44;
-/// The narrowest scale of letters, and the largest space added between them, in em; its least value, as for [`BAND`]. Feet of letters crowd
-/// together in a ring, and more so at its corners.
+/// The narrowest horizontal scale of letters.
 const NARROWEST: f64 = 0.85;
+/// The most and the least space added between letters, in em, the least around a circle and around other shapes: feet of letters crowd
+/// together in a ring, and more so at its corners.
 const TRACKING: f64 = 0.12;
 const LEAST_TRACKING: [f64; 2] = [0.03, 0.06];
-/// Space between the lines, or on both sides of a separator, and heights of a separator and of a dot, as shares of the capitals.
+/// Space on both sides of a separator and between lines without one, and heights of a separator and of a dot, as shares of the capitals.
 const SPACE: f64 = 0.8;
+const LINE_SPACE: f64 = 1.5 * SPACE;
 const SEPARATOR_HEIGHT: f64 = 0.75;
 const DOT_HEIGHT: f64 = 0.36;
 /// Margin around the drawing in the middle, as a share of half the badge's width.
@@ -127,7 +131,7 @@ pub(super) struct BadgeGroups {
 
 /// Measures of all elements.
 struct Layout {
-    /// Distances of the ring lines' centre lines from the outline, and widths.
+    /// For each ring line, the distance of its middle from the outline, and its width.
     lines: Vec<(f64, f64)>,
     /// The path of the letters' middles, and its length.
     path: Outline,
@@ -136,7 +140,7 @@ struct Layout {
     /// Horizontal scale of letters, and space between them.
     condensed: f64,
     tracking: f64,
-    /// Height of the middle above the baseline, and of capitals.
+    /// Height of the letters' middle above the baseline, and of capitals.
     middle: f64,
     capitals: f64,
     /// Distance between the free area in the middle and the outline.
@@ -147,7 +151,7 @@ impl Badge<'_> {
     /// Makes a badge from an upper text and a lower one.
     pub(super) fn draw(&self, texts: &[Option<String>; 2]) -> Result<BadgeGroups, Failure> {
         let texts: Vec<&str> = texts.iter().flatten().map(String::as_str).collect();
-        let natural: Vec<OutlinedText> = texts.iter().map(|t| self.set(t, EM, 0.0)).collect::<Result<_, _>>()?;
+        let natural: Vec<OutlinedText> = texts.iter().map(|t| self.typeset(t, EM, 0.0)).collect::<Result<_, _>>()?;
         let separator = self.separator()?;
         let layout = self.layout(&natural, separator.as_ref())?;
         let mut out = BadgeGroups::default();
@@ -158,12 +162,13 @@ impl Badge<'_> {
         }
         let mut widths = Vec::new();
         for (i, text) in texts.iter().enumerate() {
-            let set = self.set(text, layout.size, layout.tracking)?;
+            let set = self.typeset(text, layout.size, layout.tracking)?;
+            // Letters from right to left may be joined, and are bent; others are only turned.
             let glyphs = if set.rtl { "bend" } else { "rotate" };
             let narrow = Affine::scale_non_uniform(layout.condensed, 1.0);
             let letters: Vec<Letter> = as_letters(&set).iter().map(|l| narrowed(l, narrow)).collect();
-            let (frame, width) = self.frame(letters, set.lines.first().map_or(0.0, |l| l.start.y));
-            let (group, warnings) = self.line(text, frame, &layout, i == 1, 0.0, glyphs)?;
+            let (frame, width) = self.letters_frame(letters, set.lines.first().map_or(0.0, |l| l.start.y));
+            let (group, warnings) = self.line_on_ring(text, frame, &layout, i == 1, 0.0, glyphs)?;
             out.groups.push(SetGroup { id: Some(["upper", "lower"][i]), ..group });
             // The curvature of the ring is fixed, so letters that touch need space.
             out.warnings.extend(warnings.into_iter().map(|w| match w.split_once(", first near") {
@@ -176,12 +181,12 @@ impl Badge<'_> {
         if let Some(shape) = &separator {
             out.groups.push(self.separators(shape, &layout, &widths)?);
         }
-        out.groups.extend(self.center(&layout)?);
+        out.groups.extend(self.center_drawing(&layout)?);
         Ok(out)
     }
 
     /// Lays out one line of text.
-    fn set(&self, text: &str, size: f64, tracking: f64) -> Result<OutlinedText, Failure> {
+    fn typeset(&self, text: &str, size: f64, tracking: f64) -> Result<OutlinedText, Failure> {
         let mut style = style(self.m, &self.em.resized(size))?;
         style.letter_spacing += tracking;
         let limits = self.options.reading.limits.for_input(text.len());
@@ -192,8 +197,7 @@ impl Badge<'_> {
         Ok(set)
     }
 
-    /// Returns half the badge's width.
-    fn half(&self) -> f64 {
+    fn half_width(&self) -> f64 {
         0.5 * self.em.size
     }
 
@@ -203,7 +207,7 @@ impl Badge<'_> {
 
     /// Returns the outline of the badge, moved inwards.
     fn inset(&self, by: f64) -> Result<Outline, Failure> {
-        let half = self.half();
+        let half = self.half_width();
         let ellipse = |a: f64, b: f64| {
             let data = format!("M{},0A{a},{b} 0 0 1 {a},0A{a},{b} 0 0 1 {},0Z", -a, -a);
             Outline::from_svg(&data).map_err(|e| pathwarp::Error::from(e).into())
@@ -223,7 +227,7 @@ impl Badge<'_> {
 
     /// Returns a path moved to one side.
     fn offset(&self, path: &Outline, by: f64, side: &str) -> Result<Outline, Failure> {
-        if by < 1e-9 * self.half() {
+        if by < 1e-9 * self.half_width() {
             return Ok(path.clone());
         }
         let values = [("by", by.to_string()), ("side", side.to_owned())];
@@ -233,9 +237,9 @@ impl Badge<'_> {
     }
 
     /// Returns the middle line of a band between two distances from the outline, and its length.
-    fn middle(&self, from: f64, to: f64) -> Result<(Outline, f64), Failure> {
+    fn band_middle(&self, from: f64, to: f64) -> Result<(Outline, f64), Failure> {
         let path = self.inset(0.5 * (from + to))?;
-        let fine = 1e-5 * self.half();
+        let fine = 1e-5 * self.half_width();
         let length = path.to_bez_path(fine).perimeter(fine);
         Ok((path, length))
     }
@@ -274,7 +278,7 @@ fn cut_at_axis(path: &Outline, from_top: bool) -> Outline {
     Outline { subpaths: vec![if is_clockwise == from_top { cut.reversed() } else { cut }] }
 }
 
-/// Outlines about the origin, from -1 to 1 with round corners: the height of an oval, a shield with an arched top, and a hexagon.
+/// Outlines about the origin, from x = -1 to 1 once corners are round: the height of an oval, a shield with an arched top, and a hexagon.
 const OVAL: f64 = 0.76;
 const SHIELD: &str = "M-1,-.62 A1.3,1.3 0 0 1 1,-.62 L1,.05 C1,.6 .55,.98 0,1.25 C-.55,.98 -1,.6 -1,.05 Z";
 const HEXAGON: &str = "M-1.0928,0 L-.5464,-.9464 L.5464,-.9464 L1.0928,0 L.5464,.9464 L-.5464,.9464 Z";
@@ -305,7 +309,7 @@ fn centroid(path: &BezPath, tolerance: f64) -> Option<(Point, f64)> {
 impl Badge<'_> {
     /// Computes the layout with the largest type that fits.
     fn layout(&self, natural: &[OutlinedText], separator: Option<&Outline>) -> Result<Layout, Failure> {
-        let (half, rings) = (self.half(), self.m.get_one::<u8>("ring").copied().unwrap_or(2));
+        let (half, rings) = (self.half_width(), self.m.get_one::<u8>("ring").copied().unwrap_or(2));
         let line_width = LINE * half;
         // Outside of the band are a line, or a thin one, a gap and a line.
         let band_start = match rings {
@@ -329,7 +333,7 @@ impl Badge<'_> {
             SEPARATOR_HEIGHT * b.width() / b.height()
         });
         // Lengths without a size are in em.
-        let gap = if separator.is_some() { 2.0 * SPACE + separator_width } else { 1.5 * SPACE } * heights.capitals;
+        let gap = if separator.is_some() { 2.0 * SPACE + separator_width } else { LINE_SPACE } * heights.capitals;
         let letter_gaps: usize =
             natural.iter().flat_map(|t| &t.lines).map(|l| l.clusters.len().saturating_sub(1)).sum();
         let may_space = self.m.get_one::<String>("letter-spacing").is_none();
@@ -339,7 +343,7 @@ impl Badge<'_> {
         let gaps = gap * natural.len() as f64;
         let layout_at = |t: f64| {
             let (band, size) = band_and_size(t);
-            let (path, length) = self.middle(band_start, band_start + band)?;
+            let (path, length) = self.band_middle(band_start, band_start + band)?;
             Ok::<_, Failure>((path, length, band, size))
         };
         // The length of the path that letters and gaps leave.
@@ -369,6 +373,7 @@ impl Badge<'_> {
                 if given_size.is_some() { ", or make --size smaller" } else { "" }
             )));
         }
+        // Half of the spare length goes between letters, the rest between the lines.
         let more = if may_space && letter_gaps > 0 { 0.5 * spare / letter_gaps as f64 } else { 0.0 };
         let tracking = least * size + more.clamp(0.0, (TRACKING - least) * size);
         let mut lines = Vec::new();
@@ -383,8 +388,8 @@ impl Badge<'_> {
         Ok(Layout { lines, path, length, size, condensed, tracking, middle, capitals, free })
     }
 
-    /// Returns the frame of letters on a baseline, as wide as their ink, and that width.
-    fn frame(&self, letters: Vec<Letter>, baseline: f64) -> (Frame, f64) {
+    /// Returns the frame of letters on a baseline, as wide as their ink and higher than any letter, and that width.
+    fn letters_frame(&self, letters: Vec<Letter>, baseline: f64) -> (Frame, f64) {
         let ink = letters.iter().filter_map(|l| l.outline.bounding_box()).reduce(|a, b| a.union(b)).unwrap_or_default();
         let rect = Rect::new(ink.x0, baseline - self.em.size, ink.x1, baseline);
         let frame = Frame::new(rect).with_units_per_px(self.em.units_per_px());
@@ -392,7 +397,7 @@ impl Badge<'_> {
     }
 
     /// Sets a line in the middle of the upper or lower side, moved along the path by an offset.
-    fn line(
+    fn line_on_ring(
         &self,
         label: &str,
         frame: Frame,
@@ -444,26 +449,28 @@ impl Badge<'_> {
         let mut group = SetGroup { id: Some("separators"), label: "separators".into(), ..SetGroup::default() };
         for offset in offsets {
             let letter = Letter { name: String::new(), origin: Point::ORIGIN, advance: 0.0, outline: outline.clone() };
-            let (frame, _) = self.frame(vec![letter], 0.0);
+            let (frame, _) = self.letters_frame(vec![letter], 0.0);
             let rect = Rect::new(-height, frame.rect.y0, height, 0.0);
-            let (set, _) = self.line("", Frame { rect, ..frame }, layout, false, offset, "rotate")?;
+            let (set, _) = self.line_on_ring("", Frame { rect, ..frame }, layout, false, offset, "rotate")?;
             group.paths.extend(set.paths);
         }
         Ok(group)
     }
 
-    /// Returns the drawing in the middle, as large as fits. The mean of its centroid and its box's centre lies amid the free area.
-    fn center(&self, layout: &Layout) -> Result<Option<SetGroup>, Failure> {
+    /// Returns the drawing in the middle, as large as fits. The midpoint of its centroid and its box's centre is the free area's centroid.
+    fn center_drawing(&self, layout: &Layout) -> Result<Option<SetGroup>, Failure> {
         const HALVINGS: u32 = 40;
         /// Strokes enlarge the box of the paths by at most this factor. Shadows enlarge it more, and may overlap.
         const MOST_BEYOND: f64 = 1.2;
         let Some(file) = self.m.get_one::<PathBuf>("center") else { return Ok(None) };
-        let (half, reading) = (self.half(), &self.options.reading);
+        let (half, reading) = (self.half_width(), &self.options.reading);
         let doc = input::document(file, reading)?;
         let (seen, content) =
             embedded(&doc.decoded(), &input::display(file), "center-", &input::read_options(file, reading))?;
-        let room = self.inset(layout.free + CENTER_MARGIN * half)?.to_bez_path(1e-5 * half);
-        let middle = centroid(&room, 1e-4 * half).filter(|_| room.bounding_box().width() < 2.0 * half);
+        let inset = layout.free + CENTER_MARGIN * half;
+        let room = self.inset(inset)?.to_bez_path(1e-5 * half);
+        // A circle that is moved inwards beyond its centre grows again.
+        let middle = centroid(&room, 1e-4 * half).filter(|_| inset < half);
         let (middle, _) =
             middle.ok_or_else(|| Failure::usage("--center: the ring leaves no room; make --band smaller"))?;
         let painted = doc.shapes().iter().filter(|s| s.painted);
@@ -482,7 +489,6 @@ impl Badge<'_> {
             points.extend(Frame::new(seen).corners());
         }
         let ink = points.iter().fold(Rect::from_points(points[0], points[0]), |r, p| r.union_pt(*p));
-        // Strokes extend beyond their paths.
         let beyond = (seen.width() / ink.width()).max(seen.height() / ink.height()).clamp(1.0, MOST_BEYOND);
         let fits = |scale: f64| points.iter().all(|p| room.contains(middle + (*p - anchor) * (scale * beyond)));
         let (mut small, mut large) = (0.0, 2.0 * half / fine);

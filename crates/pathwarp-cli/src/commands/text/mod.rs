@@ -50,19 +50,19 @@ pub(super) fn badge_command(_: &Registry) -> Command {
         .after_help(badge::AFTER)
 }
 
-/// Sets the text, once or for each row of a table, and writes the drawings.
-pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
+/// Sets the text, once or for each row of a table, and writes the drawings. `typed` are the command's arguments, as typed.
+pub(super) fn text(registry: &Registry, m: &ArgMatches, typed: &[OsString]) -> Result<Status, Failure> {
     let size = ("size", TextStyle::default().size);
-    run(registry, m, words, &Job { size, font: None, texts: both_texts, draw: |s, t, l| s.text(t, l) })
+    run(registry, m, typed, &Job { size, font: None, texts: both_texts, draw: |s, t, l| s.text(t, l) })
 }
 
 /// Makes the badge, once or for each row of a table, and writes the drawings.
-pub(super) fn badge(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
+pub(super) fn badge(registry: &Registry, m: &ArgMatches, typed: &[OsString]) -> Result<Status, Failure> {
     let texts = |m: &ArgMatches| {
         let mut words = m.get_many::<String>("WORDS").into_iter().flatten().cloned();
         Ok([words.next(), words.next()])
     };
-    run(registry, m, words, &Job { size: badge::WIDTH, font: Some(badge::FONT), texts, draw: |s, t, l| s.badge(t, l) })
+    run(registry, m, typed, &Job { size: badge::WIDTH, font: Some(badge::FONT), texts, draw: |s, t, l| s.badge(t, l) })
 }
 
 /// A command that draws texts.
@@ -86,7 +86,7 @@ struct Drawn {
 }
 
 /// Finds the fonts, and runs a job once or for each row of a table.
-fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Result<Status, Failure> {
+fn run(registry: &Registry, m: &ArgMatches, typed: &[OsString], job: &Job) -> Result<Status, Failure> {
     let given = m.get_many::<String>("font").into_iter().flatten().map(String::as_str);
     let names: Vec<&str> = given.chain(job.font.filter(|_| !m.contains_id("font"))).collect();
     let files = ["file", "center"].into_iter().filter_map(|f| m.try_get_one::<PathBuf>(f).ok()?.map(PathBuf::as_path));
@@ -114,7 +114,7 @@ fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Re
     }
     let fonts = with_variations(chosen, &style::axis_positions(m)?, &wanted)?;
     let lines: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
-    warnings.extend(mistakes::unit_as_text(words, &lines));
+    warnings.extend(mistakes::unit_as_text(typed, &lines));
     if !m.get_flag("quiet") {
         warnings.iter().for_each(|w| terminal::warning(w));
     }
@@ -157,6 +157,7 @@ impl Setting<'_> {
         let Drawn { svg, mut warnings, missing } = draw(self, texts, &self.page(fill, target)?)?;
         let lacking: Vec<char> = missing.into_iter().collect();
         warnings.extend((!lacking.is_empty()).then(|| advice::missing_letters(&lacking)));
+        // `Back` keeps links as they are; lettering has none.
         let exported = export::drawing(svg, (self.format, &Destination::Back), &self.read, &self.options, None)?;
         let Exported { bytes, warnings: lost, kerf } = exported;
         if !self.m.get_flag("quiet") {
@@ -203,8 +204,8 @@ impl Setting<'_> {
         Ok(Drawn { svg, warnings: badge.warnings, missing: badge.missing })
     }
 
-    /// Returns the colour, and the page with its margin. By default, only a drawing for display has a margin; one with a size on paper, for
-    /// a machine or for another command has none.
+    /// Returns the colour, and the page with its margin. Without `--margin`, only a drawing for display has one: it is written to a
+    /// file, not as DXF, and its size has no unit.
     fn page(&self, fill: Option<String>, target: Option<&Path>) -> Result<LetteringOptions, Failure> {
         const MARGIN: f64 = 0.06;
         let is_shown =
@@ -216,7 +217,6 @@ impl Setting<'_> {
     }
 }
 
-/// Unites the lettering to one shape.
 fn united(registry: &Registry, svg: String, m: &ArgMatches) -> Result<String, Failure> {
     let mut unite = Warper::edit(registry, "unite", &[("by", "all")]).map_err(|e| Failure::usage(e.to_string()))?;
     if let Some(tolerance) = m.get_one::<String>("tolerance") {
@@ -354,12 +354,12 @@ fn shaping() -> impl Iterator<Item = Arg> {
 fn both_texts(m: &ArgMatches) -> Result<[Option<String>; 2], Failure> {
     let below = m.get_one::<String>("below").map(|t| unescaped(t));
     let given = m.contains_id("file") || m.get_many::<String>("WORDS").is_some_and(|mut w| w.any(|w| !w.is_empty()));
-    let text = (given || below.is_none()).then(|| words(m)).transpose()?;
+    let text = (given || below.is_none()).then(|| given_text(m)).transpose()?;
     Ok([text, below])
 }
 
 /// Returns the text from the arguments, a file or standard input.
-fn words(m: &ArgMatches) -> Result<String, Failure> {
+fn given_text(m: &ArgMatches) -> Result<String, Failure> {
     let words: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
     let file = match (m.get_one::<PathBuf>("file"), &words[..]) {
         (Some(file), _) => file.clone(),

@@ -1,4 +1,5 @@
 //! Resolves a drawing: walks usvg's tree and finds the source element, the exact outline and the exact transform of everything in it.
+//! [`Context`] explains owners and slots, and [`SceneBuilder`] markers and fixed stroke widths.
 
 mod builder;
 mod markers;
@@ -9,7 +10,7 @@ use super::lettering::Owners;
 use super::model::{Bitmap, Clip, Group, Mask, Node, Part, PartRole, PatternTile, PlacedText, Referrer, Scene};
 use super::resolve::builder::{Context, GroupAt, SceneBuilder, add_slot, holds_drawing, trace};
 use super::resolve::markers::{marked_children, place_markers};
-use super::resolve::tiles::{PaintOf, blends, lay_out_tiles};
+use super::resolve::tiles::{PaintKind, blends, lay_out_tiles};
 use crate::source::elements::{ElementId, Unpatchable};
 use crate::source::text::SourceText;
 use pathwarp::Outline;
@@ -19,8 +20,8 @@ use usvg::{Fill, Stroke};
 
 pub(crate) use builder::{Painted, Tiling};
 
-/// Resolves the drawing. `letters` are the elements of letters in texts. Patterns become geometry where `tiling` requests it. Clip paths
-/// and masks are resolved once for each bend that their referrers have in `division`, which has an index for every element, or is empty.
+/// Resolves the drawing. `letters` are the elements of letters in texts. Patterns become geometry where `tiling` requests it.
+/// `division` has the index of every element's bend, or is empty. Clip paths and masks are resolved once for each bend of their referrers.
 pub(crate) fn build(
     tree: &usvg::Tree,
     source: &SourceText,
@@ -91,9 +92,9 @@ fn resolve_group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut 
     let slot = add_slot(b, &at, Context { owner, ..context });
     context.slot = slot.or(context.slot);
     let referrer = Referrer { element, owner: context.owner };
-    let outside = Context { bend: b.bend_of(referrer, context), ..context };
-    let clip = g.clip_path().map(|c| add_clip(b, c, frame, referrer, outside));
-    let mask = g.mask().map(|m| add_mask(b, m, frame, referrer, outside));
+    let definition_context = Context { bend: b.bend_of(referrer, context), ..context };
+    let clip = g.clip_path().map(|c| add_clip(b, c, frame, referrer, definition_context));
+    let mask = g.mask().map(|m| add_mask(b, m, frame, referrer, definition_context));
     context.owner = owner;
     context.image = source.filter(|&e| b.tag(e) == "image").or(context.image);
     context.viewport = sliced_viewport(g).or(context.viewport);
@@ -102,12 +103,13 @@ fn resolve_group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut 
             resolve_filter_image(b, image.root());
         }
     }
-    // Markers are placed outside of all owners, and inside copies.
+    // Markers are placed where there is no owner, and in copies (`use`).
     let copy = context.owner.filter(|&e| b.tag(e) == "use");
     let marked = if copy == context.owner { marked_children(b, g, copy) } else { Vec::new() };
     place_markers(b, g, copy, &marked);
     let mut children = Vec::with_capacity(g.children().len());
     for (i, c) in g.children().iter().enumerate() {
+        // Skip hidden markers.
         if matches!(c, usvg::Node::Group(m) if matches!(b.markers.get(&address(m)), Some(None))) {
             continue;
         }
@@ -208,8 +210,8 @@ fn add_part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Co
     }
     let fixed_width = traced.source.or(traced.copied).is_some_and(|e| b.fixed_widths.contains(&e));
     let tile_context = Context { owner: context.owner.or(traced.source), ..context };
-    let fill_tiles = lay_out_tiles(b, p, PaintOf::Fill, frame, tile_context);
-    let stroke_tiles = if fixed_width { None } else { lay_out_tiles(b, p, PaintOf::Stroke, frame, tile_context) };
+    let fill_tiles = lay_out_tiles(b, p, PaintKind::Fill, frame, tile_context);
+    let stroke_tiles = if fixed_width { None } else { lay_out_tiles(b, p, PaintKind::Stroke, frame, tile_context) };
     b.scene.parts.push(Part {
         source: traced.source,
         drawn: traced.drawn,

@@ -29,7 +29,7 @@ const NOT_BENT: &str =
 
 /// One of the two paints of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum PaintOf {
+pub(super) enum PaintKind {
     Fill,
     Stroke,
 }
@@ -50,8 +50,8 @@ struct Layout<'l> {
 }
 
 impl Layout<'_> {
-    /// Repeats an outline over all cells, as one outline in the shape's user space. It is clipped first, so that coincident corners stay
-    /// coincident to the last bit.
+    /// Repeats an outline over all cells, as one outline in the shape's user space. It is clipped to the cell before, so that points that
+    /// coincide in one cell do so in every cell, to the last bit.
     fn repeat(&self, outline: &Outline) -> Outline {
         let inside = clip_to_box(outline, self.cell, TOLERANCE * self.cell.width());
         let copy = |corner: &Vec2| inside.transformed(Affine::translate(*corner)).transformed(self.to_shape);
@@ -69,18 +69,18 @@ impl Layout<'_> {
 pub(super) fn lay_out_tiles(
     b: &mut SceneBuilder<'_>,
     p: &usvg::Path,
-    paint_of: PaintOf,
+    kind: PaintKind,
     frame: Affine,
     context: Context,
 ) -> Option<Tiles> {
-    let (paint, opacity, bounds) = match paint_of {
-        PaintOf::Stroke => p.stroke().map(|s| (s.paint(), s.opacity(), p.stroke_bounding_box()))?,
-        PaintOf::Fill => p.fill().map(|f| (f.paint(), f.opacity(), p.bounding_box()))?,
+    let (paint, opacity, bounds) = match kind {
+        PaintKind::Stroke => p.stroke().map(|s| (s.paint(), s.opacity(), p.stroke_bounding_box()))?,
+        PaintKind::Fill => p.fill().map(|f| (f.paint(), f.opacity(), p.bounding_box()))?,
     };
     let Paint::Pattern(pattern) = paint else { return None };
     let tiling = b.tiling.as_ref()?;
     if !p.is_visible()
-        || (paint_of == PaintOf::Stroke && !tiling.strokes)
+        || (kind == PaintKind::Stroke && !tiling.strokes)
         || matches!(context.role, PartRole::Clip | PartRole::Pattern)
     {
         return None;
@@ -93,7 +93,7 @@ pub(super) fn lay_out_tiles(
     if !(tiling.is_needed)(painted, area, frame) {
         return None;
     }
-    match tiles_over(b, pattern, area, frame, context) {
+    match pattern_over(b, pattern, area, frame, context) {
         Ok(content) => Some(Tiles { opacity: opacity.get(), content }),
         Err(text) => {
             if let Some(t) = &mut b.tiling {
@@ -105,7 +105,7 @@ pub(super) fn lay_out_tiles(
 }
 
 /// Lays out a pattern over an area. Returns the note for the user if it cannot be laid out.
-fn tiles_over(
+fn pattern_over(
     b: &mut SceneBuilder<'_>,
     pattern: &Arc<usvg::Pattern>,
     area: Rect,
@@ -203,34 +203,34 @@ fn tile_path(b: &mut SceneBuilder<'_>, p: &usvg::Path, to_cell: Affine, layout: 
     let outline = known_outline(b, p);
     let is_clip = layout.context.role == PartRole::Clip;
     let order = match p.paint_order() {
-        PaintOrder::FillAndStroke => [PaintOf::Fill, PaintOf::Stroke],
-        PaintOrder::StrokeAndFill => [PaintOf::Stroke, PaintOf::Fill],
+        PaintOrder::FillAndStroke => [PaintKind::Fill, PaintKind::Stroke],
+        PaintOrder::StrokeAndFill => [PaintKind::Stroke, PaintKind::Fill],
     };
-    for of in order {
-        let (paint, painted) = match (of, p.fill(), p.stroke().filter(|_| !is_clip)) {
-            (PaintOf::Fill, Some(f), _) => (f.paint(), Cow::Borrowed(&outline)),
-            (PaintOf::Stroke, _, Some(s)) => {
+    for kind in order {
+        let (paint, painted) = match (kind, p.fill(), p.stroke().filter(|_| !is_clip)) {
+            (PaintKind::Fill, Some(f), _) => (f.paint(), Cow::Borrowed(&outline)),
+            (PaintKind::Stroke, _, Some(s)) => {
                 let tolerance = TOLERANCE * layout.cell.width() / stretch(to_cell);
                 (s.paint(), Cow::Owned(stroke_outline(&outline, s, tolerance)))
             }
             _ => continue,
         };
         let is_plain = is_clip || matches!(paint, Paint::Color(_));
-        TilePaint { path: p, of, is_plain }.lay_out(b, &painted, to_cell, layout, out);
+        TilePaint { path: p, kind, is_plain }.add_parts(b, &painted, to_cell, layout, out);
     }
 }
 
 /// The fill or the stroke of a path in a tile.
 struct TilePaint<'p> {
     path: &'p usvg::Path,
-    of: PaintOf,
+    kind: PaintKind,
     /// `true` for a single colour, so that one path serves all cells.
     is_plain: bool,
 }
 
 impl TilePaint<'_> {
     /// Adds the parts that paint `outline` in all cells.
-    fn lay_out(
+    fn add_parts(
         &self,
         b: &mut SceneBuilder<'_>,
         outline: &Outline,
@@ -255,11 +255,11 @@ impl TilePaint<'_> {
             let transform = layout.to_shape * Affine::translate(*c) * to_cell;
             let frame = layout.frame * transform;
             // The paint may be a pattern in turn.
-            let tiles = lay_out_tiles(b, self.path, self.of, frame, layout.context);
+            let tiles = lay_out_tiles(b, self.path, self.kind, frame, layout.context);
             let mut part = self.part(inside.clone().into(), frame, layout.context);
-            match self.of {
-                PaintOf::Stroke => part.stroke_tiles = tiles,
-                PaintOf::Fill => part.fill_tiles = tiles,
+            match self.kind {
+                PaintKind::Stroke => part.stroke_tiles = tiles,
+                PaintKind::Fill => part.fill_tiles = tiles,
             }
             b.scene.parts.push(part);
             out.push(Node::Group(Box::new(layout.group(transform, vec![Node::Part(b.scene.parts.len() - 1)]))));
@@ -269,8 +269,8 @@ impl TilePaint<'_> {
     /// A part with this paint alone.
     fn part(&self, local: LazyOutline, frame: Affine, context: Context) -> Part {
         Part {
-            fill: self.path.fill().filter(|_| self.of == PaintOf::Fill).cloned(),
-            stroke: self.path.stroke().filter(|_| self.of == PaintOf::Stroke).cloned(),
+            fill: self.path.fill().filter(|_| self.kind == PaintKind::Fill).cloned(),
+            stroke: self.path.stroke().filter(|_| self.kind == PaintKind::Stroke).cloned(),
             rendering: self.path.rendering_mode(),
             slot: context.slot,
             in_tile: true,

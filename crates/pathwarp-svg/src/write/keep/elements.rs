@@ -60,7 +60,7 @@ fn patch_filters(k: &mut Keeper<'_, '_>, g: &Group) {
     if g.filters.is_empty() {
         return;
     }
-    if !k.input.has_filters(g) {
+    if !k.input.keeps_filters(g) {
         return replace_filters(k, g);
     }
     let growth = boxes::growth(&k.input, g);

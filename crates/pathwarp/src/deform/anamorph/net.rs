@@ -59,7 +59,8 @@ impl Push {
 }
 
 impl PushedNet {
-    /// Returns δ of the pushed net. For an eye at infinity, δ is 1 minus the length of a push.
+    /// Returns δ of the pushed net: a point's distance from the eye as a fraction of its image's or, for an eye at infinity, 1 minus the
+    /// length of the push.
     pub(super) fn dilation(&self, scene: &Scene, local: bool) -> Result<Dilation, Error> {
         let reference = self.reference(scene)?;
         let mut out = Dilation::none(reference);
@@ -76,14 +77,14 @@ impl PushedNet {
                 return Err(wrong(format!("is not a control point: {}", describe_numbers(&reference))));
             }
             // δ of a push to so many times the distance, and of one away from a point by a length.
-            let by = |factor: f64| {
+            let delta_by = |factor: f64| {
                 if scene.eye.is_infinite() {
                     let problem = "multiplies the distance of an eye at infinity; give a length instead, by `away`, or after a `point`";
                     return Err(wrong(problem.into()));
                 }
                 check_delta(1.0 / factor)
             };
-            let away = |from: Point, length: f64| {
+            let delta_away = |from: Point, length: f64| {
                 check_delta(match scene.eye {
                     Eye::At(foot, distance) => {
                         let d = (from - foot).hypot().hypot(distance);
@@ -93,8 +94,8 @@ impl PushedNet {
                 })
             };
             match *push {
-                Push::By(node, factor) => out.set(node, by(factor)?),
-                Push::Away(node, length) => out.set(node, away(reference.point(node), length)?),
+                Push::By(node, factor) => out.set(node, delta_by(factor)?),
+                Push::Away(node, length) => out.set(node, delta_away(reference.point(node), length)?),
                 Push::To(node, to) => {
                     let from = reference.point(node);
                     let delta = match scene.eye {
@@ -109,7 +110,7 @@ impl PushedNet {
                 }
                 Push::Prescribe(p, value) => {
                     let p = scene.scale * p;
-                    let delta = if scene.eye.is_infinite() { away(p, value)? } else { by(value)? };
+                    let delta = if scene.eye.is_infinite() { delta_away(p, value)? } else { delta_by(value)? };
                     let problem = "is on a fixed side, or no control point is free to move; raise `degree` or choose another `reference`";
                     let node = out.prescribe(p, delta, |node| is_held(&reference, node, local));
                     check_delta(out.delta_of(node.ok_or_else(|| wrong(problem.into()))?))?;
@@ -119,7 +120,7 @@ impl PushedNet {
         Ok(out)
     }
 
-    /// Returns the regular net at the artwork's apparent size.
+    /// Returns the net before its pushes, whose corners are given in the drawing, in the artwork scaled to its apparent size.
     fn reference(&self, scene: &Scene) -> Result<Reference, Error> {
         let points = match &self.reference[..] {
             [] => vec![scene.frame.origin(), Point::new(scene.frame.x1, scene.frame.y1)],
@@ -151,7 +152,8 @@ impl PushedNet {
     }
 }
 
-/// Returns `true` for control points that a prescribed point must not move.
+/// Returns `true` for control points that a prescribed point must not move: on the first side of a triangle, which joins what stays, and
+/// with `local` on the edge of a box.
 fn is_held(reference: &Reference, node: [usize; 3], local: bool) -> bool {
     match reference {
         Reference::Triangle(..) => reference.on_side(node, 0),

@@ -6,7 +6,7 @@ use super::{Look, Mirror, MirrorShape, Onto};
 use crate::error::Error;
 use crate::param::{Axis, Settings};
 
-/// Reads the eye.
+/// Reads the eye: in the drawing, until another parameter gives its distance, or at infinity. DZ points towards the viewer, unlike z.
 pub(super) fn eye(s: &Settings<'_>) -> Result<Eye, Error> {
     let Some(text) = s.texts("eye").pop().filter(|t| t.starts_with("inf")) else {
         return Ok(Eye::At(s.point("eye")?, 0.0));
@@ -114,7 +114,7 @@ impl<'t> Words<'t> {
         Error::usage(self.param, self.text, problem)
     }
 
-    /// Refuses words other than these `words`, and values of other names than `names`.
+    /// Refuses words not in `words`, names with values not in `names`, and what is given twice.
     fn only(&self, words: &[&str], names: &[&str]) -> Result<(), Error> {
         for (name, value) in &self.list {
             let known = if value.is_some() { names } else { words };
@@ -137,7 +137,6 @@ impl<'t> Words<'t> {
         if v > 0.0 && v < 1e9 { Ok(Some(v)) } else { Err(self.wrong(format!("has a {name} that is not positive"))) }
     }
 
-    /// Reads the radius or the diameter.
     fn radius(&self, s: &Settings<'_>) -> Result<f64, Error> {
         self.radius_at(s, "radius", "diameter")
     }
@@ -159,6 +158,7 @@ pub(super) fn onto(s: &Settings<'_>, text: &str) -> Result<Onto, Error> {
     match w.kind {
         "plane" => plane(s, &w),
         "cylinder" => {
+            // The axis of a level cylinder is horizontal.
             w.only(&["inside", "level"], &["radius", "diameter"])?;
             Ok(Onto::Cylinder { radius: w.radius(s)?, level: w.has("level"), inside: w.has("inside") })
         }

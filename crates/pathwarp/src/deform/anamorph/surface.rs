@@ -291,7 +291,7 @@ pub(super) struct SpacePlane {
 }
 
 impl SpacePlane {
-    /// Creates the plane through a point; `normal` points away from the eye.
+    /// Creates the plane through a point, which is `at` on the sheet that is laid flat; `normal` points away from the eye.
     pub(super) fn new(through: Space, normal: Space, at: Point) -> Self {
         let normal = unit_vector(normal);
         Self { through, normal, axes: picture_axes(normal), at }

@@ -143,13 +143,13 @@ pub(super) fn ring_translations(map: &BendMap, letters: &[Letter], ring_strip: T
 }
 
 /// Returns the maps of every object, one for each of `count` copies of the row, with equal gaps between all objects. The first begins at
-/// `first`; on a closed skeleton its middle is there. Without `count`, there is one copy, at the distances drawn.
+/// the distance `first_at`; on a closed skeleton its middle is there. Without `count`, there is one copy, at the distances drawn.
 pub(super) fn object_maps(
     map: &BendMap,
     setting: LetterSetting,
     objects: &[Letter],
     count: Option<usize>,
-    first: f64,
+    first_at: f64,
 ) -> Vec<Vec<Affine>> {
     let scale = map.to_strip.y_scale;
     let object_map = |o: &Letter, s: f64| setting.letter_map(map, o.middle().x, s);
@@ -160,9 +160,9 @@ pub(super) fn object_maps(
     let total = (count * objects.len()) as f64;
     let spare = map.length - count as f64 * width;
     let (gap, mut s) = match objects.first() {
-        Some(o) if map.closed => (spare / total, first - 0.5 * scale * o.advance),
-        _ if total > 1.0 => (spare / (total - 1.0), first),
-        _ => (0.0, first + 0.5 * spare),
+        Some(o) if map.closed => (spare / total, first_at - 0.5 * scale * o.advance),
+        _ if total > 1.0 => (spare / (total - 1.0), first_at),
+        _ => (0.0, first_at + 0.5 * spare),
     };
     let mut out = vec![Vec::with_capacity(count); objects.len()];
     for _ in 0..count {

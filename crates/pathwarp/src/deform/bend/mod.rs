@@ -5,7 +5,7 @@
 //!
 //! - **unit normals** ([`map`]): u is given by the arc length s, so that ∂F/∂s = (1 + κd)·T and ∂F/∂d = N with the curvature κ, the unit
 //!   tangent T and the unit normal N. The strip is as high as the artwork everywhere, and folds beyond the centre of curvature, where
-//!   1 + κd = 0. At corners S is blended into the mitre, along lines only near the corner, so that offsets of a polygon are exact;
+//!   1 + κd = 0. At corners S turns into the mitre, along a whole curve but only the end of a line, so that offsets of polygons are exact;
 //! - **handles** ([`map`]): the generalised algorithm of de Casteljau, with one handle per leg of the control polygon, and deeper
 //!   levels on request. F is polynomial in u and v, and the image of a Bézier curve is exactly a Bézier curve. By default a handle is
 //!   the leg's normal, as long as the artwork is high. Where pieces meet, and on splines ([`spline`]), handles stand at the control
@@ -52,6 +52,7 @@ parameters! {
     /// ```
     #[derive(Debug, Clone, PartialEq)]
     pub struct Bend(s, along: NamedPath) {
+        // `param = …` declares a parameter without a field; fields after `let` follow from the settings `s`.
         /// The skeleton: one connected path, such as circle:r=60mm, arc:r=60mm,from=200,to=340 or
         /// spiral:turns=3,inner=20mm,outer=80mm.
         /// It is needed unless there is a preset.
@@ -203,16 +204,16 @@ impl Bend {
             Align::End => (rect.x1, length),
             Align::Middle => (rect.center().x, middle),
         };
-        let strip = |x_scale: f64, y_scale: f64| {
+        let strip_scaled = |x_scale: f64, y_scale: f64| {
             let offset = to + self.offset - x_scale * from;
             ToStrip { x_scale, offset, y_scale, baseline: self.baseline }
         };
-        let to_strip = strip(x_scale, self.width * if self.stretch == Stretch::Scale { x_scale } else { 1.0 });
-        let ring_strip = spreads_letters.then(|| strip(length / rect.width(), 1.0));
+        let to_strip = strip_scaled(x_scale, self.width * if self.stretch == Stretch::Scale { x_scale } else { 1.0 });
+        let ring_strip = spreads_letters.then(|| strip_scaled(length / rect.width(), 1.0));
         let pieces = pieces.into_iter().map(Arc::new).collect();
         let shift = repeats.spacing * (repeats.count - 1) as f64;
         let rect = Rect { x1: rect.x1 + shift, ..rect };
-        let crease_range = (rect.x0 - rect.width(), rect.x1 + rect.width());
+        let crease_range = (rect.x0 - rect.width(), rect.x1 + rect.width()); // Artwork may exceed its frame.
         let map = BendMap { pieces, length, closed, to_strip, crease_range };
 
         let mut built = Built::new(map.simplest());
@@ -236,8 +237,8 @@ impl Bend {
         if sets_objects {
             let count = spreads_objects.then_some(repeats.count);
             let setting = self.setting.unwrap_or(LetterSetting::Rotate);
-            let first = if closed { middle } else { 0.0 } + self.offset;
-            built.placement.letters = letters::object_maps(&map, setting, &self.objects, count, first);
+            let first_at = if closed { middle } else { 0.0 } + self.offset;
+            built.placement.letters = letters::object_maps(&map, setting, &self.objects, count, first_at);
             built.placement.of_objects = true;
         } else {
             self.set_letters(&mut built, &map, rect, ring_strip);
@@ -352,7 +353,8 @@ impl Bend {
             Some(Handles::Pieces(given)) => Some(&given[..]),
             _ => None,
         };
-        skeleton.with_handles(given, (self.unit(), heights), !self.by_parameter)
+        let by_arc_length = !self.by_parameter;
+        skeleton.with_handles(given, (self.unit(), heights), by_arc_length)
     }
 
     /// Sets the letters one by one, or warns where artwork in the box `rect` folds. With a `ring_strip`, letters that are bent stand apart.
@@ -368,7 +370,7 @@ impl Bend {
         let warning = if self.around_letters && !letters.is_empty() {
             if let Some(ring_strip) = ring_strip {
                 built.placement.letters = letters::ring_translations(map, letters, ring_strip);
-                built.placement.before = true;
+                built.placement.before = true; // The map bends the letters where these put them.
             }
             map.fold_warning(letters::samples(letters, copies))
         } else if self.ink.is_empty() {

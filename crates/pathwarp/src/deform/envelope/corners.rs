@@ -4,7 +4,7 @@
 //! Four corners are chosen by the distortion of the patch between them, to which corners at points that are not sharp add a cost.
 
 use super::distortion::{distortion, turning_cost};
-use super::fit::{Corners, Ring, SAMPLES, SIDES, area, bounds, mirrored, part, reversed};
+use super::fit::{Corners, Ring, SAMPLES, SIDES, bounds, double_area, mirrored, part, reversed};
 use crate::anchors;
 use crate::error::{Error, show};
 use crate::map::Jet;
@@ -64,7 +64,7 @@ pub(super) fn ring(
         None => find_corners(name, sub, bounds, samples)?,
     };
     let drawn = divide(&sub.segs, locations);
-    let area: f64 = drawn.iter().flatten().map(area).sum();
+    let area: f64 = drawn.iter().flatten().map(double_area).sum();
     // With y down, bottom → right → top → left is counter-clockwise on the screen.
     let backwards = area > 0.0;
     let order = if backwards { [3, 2, 1, 0] } else { [0, 1, 2, 3] };
@@ -351,7 +351,7 @@ pub(super) fn without_tails(sub: &Subpath) -> (Subpath, Vec<Point>) {
     const MAX_AREA: f64 = 0.08;
     /// The least area of a tail, as a share of the square over the notches' distance.
     const MIN_DEPTH: f64 = 0.15;
-    let whole: f64 = sub.segs.iter().map(area).sum();
+    let whole: f64 = sub.segs.iter().map(double_area).sum();
     let n = sub.segs.len();
     let notches: Vec<usize> = sharp_nodes(sub, -whole.signum()).collect();
     let tips: Vec<usize> = sharp_nodes(sub, whole.signum()).collect();
@@ -363,7 +363,7 @@ pub(super) fn without_tails(sub: &Subpath) -> (Subpath, Vec<Point>) {
         let between: Vec<usize> = (0..(c + n - a) % n).map(|i| (a + i) % n).collect();
         let (from, to) = (sub.segs[*a].start(), sub.segs[c].start());
         let chord = Seg::Line(Line::new(to, from));
-        let tail = between.iter().map(|i| area(&sub.segs[*i])).sum::<f64>() + area(&chord);
+        let tail = between.iter().map(|i| double_area(&sub.segs[*i])).sum::<f64>() + double_area(&chord);
         let tip = between.iter().skip(1).find(|i| tips.contains(i));
         if let Some(tip) = tip
             && tail * whole > 0.0
@@ -480,7 +480,7 @@ impl Curves<'_> {
         } else {
             [at_start, second, reversed(&at_end), reversed(&first)]
         };
-        let area: f64 = sides.iter().flatten().map(area).sum();
+        let area: f64 = sides.iter().flatten().map(double_area).sum();
         if area > 0.0 {
             // The ring is run the other way; the bottom remains the bottom.
             sides = mirrored(sides);

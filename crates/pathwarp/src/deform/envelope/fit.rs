@@ -83,7 +83,7 @@ pub(in crate::deform) fn fit(frame: Rect, ring: &Ring, keep: Keep, spread: Optio
     let s = map.sides();
     built.explanation.warnings.extend(crossings([&s.bottom, &s.right, &s.top, &s.left]));
     built.explanation.warnings.extend(fold_warning(&map, from_unit));
-    built.map = anchors::settled(map.simplest(), frame);
+    built.map = anchors::simplified(map.simplest(), frame);
     Ok(built)
 }
 
@@ -123,7 +123,7 @@ pub(super) fn sides_at_pace(ring: &Ring, given: Option<Spread>, keep: Keep, buil
     };
     // The kept lines run between a pair of curves; the other two sides are kept lines, too.
     let ([c, d], [i, j]) = if horizontal { ([bottom, &top], [0, 2]) } else { ([&left, right], [3, 1]) };
-    // At even steps along the axis, lines do not lean; a curve that turns back has none.
+    // At even steps along the axis, lines do not lean; along a curve that turns back, there are no such steps.
     let exact = if given.is_some() { None } else { Side::new(c, axis).zip(Side::new(d, axis)) };
     let (a, b) = match exact {
         Some(pair) => pair,
@@ -325,7 +325,7 @@ impl Ring {
     }
 
     /// Returns `true` if the bottom and the top meet at an end.
-    pub(super) fn meets(&self) -> bool {
+    pub(super) fn bottom_meets_top(&self) -> bool {
         let is_point = |side: &[Seg]| side.iter().all(|s| s.bounding_box().size().max_side() == 0.0);
         is_point(&self.sides[1]) || is_point(&self.sides[3])
     }
@@ -349,7 +349,7 @@ pub(super) fn mirrored([bottom, right, top, left]: [Vec<Seg>; 4]) -> [Vec<Seg>; 
 }
 
 /// Returns twice the signed area between a piece and the origin. The sum over a closed path is positive if it runs clockwise on the screen.
-pub(super) fn area(s: &Seg) -> f64 {
+pub(super) fn double_area(s: &Seg) -> f64 {
     let point = |i: u32| s.eval(f64::from(i) / f64::from(SAMPLES)).to_vec2();
     (0..SAMPLES).map(|i| point(i).cross(point(i + 1))).sum()
 }

@@ -2,7 +2,7 @@
 //!
 //! The map is the Coons patch of the sides ([`Coons`](crate::map::Coons)), which equals the shaper's if every side is one cubic
 //! (Koppinen, *A plane transformation from 16 control points*, equation 7); or it fills a closed shape in columns, rows or lines of
-//! lettering. [`Choice`] decides among them. The four sides, bottom, right, top and left, make a [`Ring`].
+//! lettering. [`Chooser`] decides among them. The four sides, bottom, right, top and left, make a [`Ring`].
 
 mod columns;
 mod corners;
@@ -19,7 +19,7 @@ use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Axis, Choice as _, Kind, Letter, NamedPath, Settings, Value as _, choice, parameters};
 use columns::{Columns, Margins, Region, bisect, fill, no_room};
 use distortion::{distortion, grid, stretches, turning_cost};
-use fit::{Corners, SIDES, area, bounds, is_curved, preview, reversed};
+use fit::{Corners, SIDES, bounds, double_area, is_curved, preview, reversed};
 use kurbo::{Affine, Line, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -149,7 +149,7 @@ impl Envelope {
         corners(points: [impl Into<Point>; 4]) => corners: Some(Corners::Points(points.map(Into::into)));
         /// Sets the corners of a closed path by the numbers of its nodes, from 1.
         corner_nodes(nodes: [usize; 4]) => corners: Some(Corners::Nodes(nodes));
-        /// Says that the artwork is lettering, which has stems to be kept upright.
+        /// Sets `true` for lettering, which has stems to be kept upright.
         lettering(lettering: bool);
         /// Gives the letters of the artwork, which may be several lines.
         letters(letters: impl Into<Arc<[Letter]>>) => letters: letters.into(), lettering: true;
@@ -181,7 +181,7 @@ impl Envelope {
             Lines::Fit => lines::divide(&self.letters, &self.ink),
             Lines::Together => Vec::new(),
         };
-        let choice = Choice {
+        let chooser = Chooser {
             frame: self.frame,
             keep: self.keep,
             spread: self.spread,
@@ -195,7 +195,7 @@ impl Envelope {
             ink: &self.ink,
         };
         let ring = self.ring(shape.as_ref());
-        let mut built = choice.build(shape.map(|s| s.1).filter(|_| !divided), ring)?;
+        let mut built = chooser.build(shape.map(|s| s.1).filter(|_| !divided), ring)?;
         if !tips.is_empty() {
             let tips = tips.into_iter().map(show).collect::<Vec<_>>().join(" ");
             built.note(format!("left free: what sticks out at {tips}"));
@@ -269,6 +269,7 @@ static INFO: Info = Info::new("envelope", "put artwork into any closed shape, or
         }],
         ..ByHand::NONE
     })
+    // In a drawing program, the topmost selected path is the shape.
     .guides(&["envelope"], 1)
     .with_letters()
     .about("The artwork's box is laid onto a shape, and the artwork follows. Name a closed path (--envelope, for instance an object of \
@@ -359,7 +360,6 @@ const SIN_45: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Envelope::read(s)?.build());
 
-/// Reads the curves of the sides.
 fn curves(s: &Settings<'_>) -> Result<[Option<NamedPath>; 4], Error> {
     let [bottom, right, top, left] = SIDES.map(|name| s.path_if(name));
     Ok([bottom?, right?, top?, left?])
@@ -385,7 +385,7 @@ const GRID: u32 = 24;
 
 /// The settings and the artwork that decide on the map: the patch of four sides, columns, rows or lines.
 #[derive(Clone, Copy)]
-struct Choice<'a> {
+struct Chooser<'a> {
     frame: Rect,
     keep: Keep,
     spread: Option<Spread>,
@@ -398,11 +398,11 @@ struct Choice<'a> {
     ink: &'a [Point],
 }
 
-impl Choice<'_> {
+impl Chooser<'_> {
     /// Builds the map. `closed` is the shape, unless the user divided it; `ring` is its division into four sides.
     fn build(&self, closed: Option<Subpath>, ring: Result<Ring, Error>) -> Result<Built, Error> {
         // Curves that meet enclose a shape.
-        let closed = closed.or_else(|| ring.as_ref().ok().filter(|r| r.meets()).map(Ring::closed));
+        let closed = closed.or_else(|| ring.as_ref().ok().filter(|r| r.bottom_meets_top()).map(Ring::closed));
         match (self.keep, closed) {
             (Keep::Verticals, Some(shape)) if self.lines.len() > 1 => self.in_lines(&shape),
             (Keep::Verticals | Keep::Horizontals, Some(shape)) => {
@@ -412,12 +412,12 @@ impl Choice<'_> {
             (keep, _) => {
                 let ring = ring?;
                 // Between curved sides, only columns and rows keep lines.
-                let across = match keep {
+                let kept_sides = match keep {
                     Keep::Verticals => [1, 3],
                     Keep::Horizontals => [0, 2],
                     _ => return self.patch(&ring, keep),
                 };
-                if across.iter().any(|k| is_curved(&ring, *k)) {
+                if kept_sides.iter().any(|k| is_curved(&ring, *k)) {
                     return fill(self.frame, &ring.closed(), keep == Keep::Verticals, &self.margins);
                 }
                 self.patch(&ring, keep)
@@ -445,7 +445,7 @@ impl Choice<'_> {
             }
             ring => (ring, self.frame),
         };
-        let patch = || Choice { frame, ..*self }.patch(ring.as_ref()?, Keep::Nothing).ok();
+        let patch = || Chooser { frame, ..*self }.patch(ring.as_ref()?, Keep::Nothing).ok();
         if has_corners && let Some(built) = patch() {
             return Ok(built);
         }
@@ -479,7 +479,7 @@ impl Choice<'_> {
         let mut strips = lines::Strips::new(self.lines, self.letter_count);
         let row = |frame: Rect| {
             let (ring, frame) = between_notches(ring.clone(), shape, frame);
-            Choice { frame, ..*self }.patch(&ring, Keep::Nothing)
+            Chooser { frame, ..*self }.patch(&ring, Keep::Nothing)
         };
         let rows = strips.frames(self.lines, size)?.into_iter().map(row).collect::<Result<Vec<Built>, _>>().ok()?;
         let tiles = rows.iter().map(|b| TileRow { cuts: Vec::new(), maps: vec![Arc::clone(&b.map)] }).collect();
@@ -511,7 +511,7 @@ fn has_four_corners(shape: &Subpath, ring: &Ring) -> bool {
     const MAX_LEAN: f64 = 0.9;
     /// The largest ratio of both stretches, relative to their means, in nine tenths of the samples.
     const MAX_RATIO: f64 = 2.2;
-    let around: f64 = shape.segs.iter().map(area).sum();
+    let around: f64 = shape.segs.iter().map(double_area).sum();
     let tips: Vec<Point> = corners::sharp_nodes(shape, around.signum()).map(|i| shape.segs[i].start()).collect();
     let size = bounds(shape).size().max_side();
     let is_corner =
@@ -536,14 +536,14 @@ fn has_four_corners(shape: &Subpath, ring: &Ring) -> bool {
 /// Ends lettering at the notches of a swallow-tailed banner: a side with a notch becomes straight, and the box is widened so that
 /// the letters end at the upright through the notch.
 fn between_notches(mut ring: Ring, shape: &Subpath, frame: Rect) -> (Ring, Rect) {
-    let around: f64 = shape.segs.iter().map(area).sum();
+    let around: f64 = shape.segs.iter().map(double_area).sum();
     let notches: Vec<Point> = corners::sharp_nodes(shape, -around.signum()).map(|i| shape.segs[i].start()).collect();
     let (Some(bottom), Some(top)) =
         (Side::new(&ring.sides[0], Pace::Length), Side::new(&reversed(&ring.sides[2]), Pace::Length))
     else {
         return (ring, frame);
     };
-    // The share of the width between a side and the upright through its notch, on which the notch lies where it changes from left to right.
+    // The share of the width between a side and the upright through a notch. Uprights nearer to the side lie outside of the notch.
     let share = |notch: Point, right: bool| {
         let outside = |t: f64| {
             let u = if right { 1.0 - t } else { t };

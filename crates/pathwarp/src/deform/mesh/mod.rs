@@ -93,7 +93,7 @@ impl Mesh {
         let r = quilt.region;
         let frame = self.frame.unwrap_or(r);
         let map = quilt.map().ok_or(GeometryError::FlatFrame { width: r.width(), height: r.height() })?;
-        let map = crate::anchors::settled(map, frame);
+        let map = crate::anchors::simplified(map, frame);
         let mut built = Built::new(map);
         let joints = if worst_kink < VISIBLE_KINK { "smooth" } else { "kinked" };
         built.note(format!("mesh: {columns} by {rows} patches; joints: {joints}"));

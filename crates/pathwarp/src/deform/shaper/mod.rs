@@ -148,7 +148,7 @@ impl Shaper {
         };
         let map = compose(&anchors::to_standard("base", &base)?, net, h2);
         // If only rounding moves the frame, the map is the identity.
-        let map = anchors::settled(map, self.frame);
+        let map = anchors::simplified(map, self.frame);
 
         let mut built = Built::new(map);
         built.explanation = explanation;

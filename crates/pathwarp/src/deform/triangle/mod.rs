@@ -3,8 +3,8 @@
 //! F(u) = Σ wᵢⱼₖ Pᵢⱼₖ Bᵢⱼₖ(u) / Σ wᵢⱼₖ Bᵢⱼₖ(u), with Bᵢⱼₖ(u) = n!/(i!j!k!)·u₀ⁱu₁ʲu₂ᵏ and u the barycentric coordinates in
 //! the reference triangle ABC. Pᵢⱼₖ starts at (iA + jB + kC)/n, where nothing moves. At degree 1 the map is affine, and with weights
 //! projective. At degree 2 there are six points, and lines become parabolas, or with weights other rational curves. Outside a
-//! triangle that the user gives, nothing moves. The map of a side depends on that side's points alone, so no gap opens along a side
-//! whose points do not move. Outside the default triangle about the artwork's box the map continues, as strokes reach past the box.
+//! triangle that the user gives, nothing moves. On a side, the map depends on that side's points alone: if they do not move, no gap
+//! opens there. Outside the default triangle about the artwork's box the map continues, as strokes reach past the box.
 //!
 //! G. Farin, *Triangular Bernstein–Bézier patches*, CAGD 3 (1986); J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form
 //! deformation*, CAGD 46 (2016), where the net is moved along rays (see `anamorph`).
@@ -52,7 +52,7 @@ parameters! {
         birational: bool = flag("birational");
         /// Let the map continue outside the triangle instead of leaving everything there in place.
         extend: bool = flag("extend");
-        let changes: Vec<([usize; 3], Change)> = changes(s, |text| vec![text])?;
+        let changes: Vec<([usize; 3], Change)> = changes(s, |change| vec![change])?;
         let frame: Option<Rect> = Some(s.frame().rect);
     }
 }
@@ -108,15 +108,15 @@ impl Triangle {
         for &(node, change) in &self.changes {
             self.change(&mut net, node, change)?;
         }
-        let back = if self.birational { Some(self.make_birational(&mut net)?) } else { None };
-        let mut built = Built::new(net.map(extend, back));
+        let inverse = if self.birational { Some(self.make_birational(&mut net)?) } else { None };
+        let mut built = Built::new(net.map(extend, inverse));
         if self.birational {
             let [a, b, c] = [[1, 1, 0], [1, 0, 1], [0, 1, 1]].map(|k| net.weights[index(k)]);
             built.note(format!("weights of 1,1,0, of 1,0,1 and of 0,1,1: {a:.6}, {b:.6} and {c:.6}"));
         }
         if !extend {
             let names = ["first and second", "second and third", "third and first"];
-            let crosses = |k: usize| self.frame.is_none_or(|f| meets(f, corners[k], corners[(k + 1) % 3]));
+            let crosses = |k: usize| self.frame.is_none_or(|f| line_meets_box(f, corners[k], corners[(k + 1) % 3]));
             for k in (0..3).filter(|&k| !net.side_is_fixed(k) && crosses(k)) {
                 built.warn(format!(
                     "the side between the {} corner meets the artwork's box and has control points moved: artwork that crosses it \
@@ -141,8 +141,8 @@ is torn apart; keep that side's points in place, choose a larger `reference`, or
             return Err(wrong("sets the weights of the points between the corners: give weights of corners only"));
         }
         let points: Vec<Point> = indices(2).into_iter().map(|ijk| net.point(ijk)).collect();
-        let lambda = [[2, 0, 0], [0, 2, 0], [0, 0, 2]].map(|corner| net.weights[index(corner)].sqrt());
-        let found = birational::birational(&points, lambda, self.corners).ok_or_else(|| {
+        let roots_of_weights = [[2, 0, 0], [0, 2, 0], [0, 0, 2]].map(|corner| net.weights[index(corner)].sqrt());
+        let found = birational::birational(&points, roots_of_weights, self.corners).ok_or_else(|| {
             wrong(
                 "finds no positive weights for this net: its corners lie on one line, or a point between two corners lies too far off; \
 move it nearer to the side between them",
@@ -183,7 +183,7 @@ pub(super) fn polygon(corners: &[Point]) -> BezPath {
 }
 
 /// Returns `true` if the line between two points runs through a box or along its edge.
-fn meets(r: Rect, a: Point, b: Point) -> bool {
+fn line_meets_box(r: Rect, a: Point, b: Point) -> bool {
     let rounding = 1e-9 * (r.width() + r.height());
     let r = r.inflate(rounding, rounding);
     // Clip the line's parameter range by the box's two slabs.
@@ -319,8 +319,8 @@ impl TriangleNet {
         nodes.iter().all(|&k| self.moves[k].hypot() <= 1e-12 * size && self.weights[k] == self.weights[nodes[0]])
     }
 
-    /// Returns the map, with the inverse `back` if it is known. Outside the triangle it is the identity or, if `extended`, continues.
-    fn map(&self, extended: bool, back: Option<Quotient>) -> Arc<dyn Map> {
+    /// Returns the map: outside the triangle the identity or, if `extended`, continued. Without an `inverse`, that is sought in `domain`.
+    fn map(&self, extended: bool, inverse: Option<Quotient>) -> Arc<dyn Map> {
         let to_coordinates = coordinates(self.corners);
         let [a, b, c] = self.corners;
         let bounds = Rect::from_points(a, b).union_pt(c);
@@ -339,7 +339,7 @@ impl TriangleNet {
             let y = plane(&|at, ijk| (self.point(ijk).y - origin.y) * self.weights[at]);
             Quotient::rational(to_coordinates, origin, x, y, plane(&|at, _| self.weights[at]), domain)
         };
-        whole.back = back.map(Box::new);
+        whole.back = inverse.map(Box::new);
         if extended {
             return whole.simplest();
         }

@@ -139,7 +139,7 @@ fn sides(net: &Net) -> Ring {
 pub(super) fn over(rect: Rect, net: &Net) -> Result<Built, Error> {
     with_area(rect)?;
     let net: Net = net.map(|row| row.map(|p| p + rect.origin().to_vec2()));
-    let mut built = Built::new(anchors::settled(Arc::new(BicubicNet::over(rect, &net)), rect));
+    let mut built = Built::new(anchors::simplified(Arc::new(BicubicNet::over(rect, &net)), rect));
     built.overlay(Role::Base, kurbo::Shape::to_path(&rect, 0.1));
     built.overlay(Role::Cage, rows_path(&net));
     Ok(built)

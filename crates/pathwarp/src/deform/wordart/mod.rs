@@ -12,7 +12,7 @@ use super::bend::{Align, Bend, Stretch};
 use super::entry::{Built, ByHand, Case, Entry, Example, Gallery, Info, Law, Role};
 use crate::anchors;
 use crate::error::{Error, with_area};
-use crate::map::{AffineMap, Along, Guide, TileRow, Tiled, tiled};
+use crate::map::{AffineMap, Guide, GuidePace, TileRow, Tiled, tiled};
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Axis, Kind, Letter, Settings, parameters, word_space};
 use kurbo::{Affine, BezPath, Point, Rect, Size};
@@ -126,12 +126,12 @@ impl WordArt {
         }
         let placed_guides = || guides(shape_box.width(), shape_box.height());
         let padded = self.padded(placed_guides()?, &cuts, shape_box)?;
-        let rows = padded.rows(placed_guides()?, &cuts, shape_box, &mut built)?;
+        let rows = padded.band_maps(placed_guides()?, &cuts, shape_box, &mut built)?;
         let map = rows.and_then(|rows| Tiled::over(padded.frame, cuts, rows));
         let map = map.ok_or_else(|| {
             wrong("has a guide that shrinks to a point in this box; choose an `adj` nearer to its default".into())
         })?;
-        built.map = anchors::settled(map, *rect);
+        built.map = anchors::simplified(map, *rect);
         Ok(built)
     }
 
@@ -145,6 +145,7 @@ impl WordArt {
         }
         match guides(1.0, 1.0)? {
             Guides::Along(paths) => {
+                // Round a closed path, a word space separates the end of the text from its start.
                 let space = word_space(&self.letters).unwrap_or(0.0);
                 let side = paths.iter().take(cuts.len() + 1).enumerate().map(|(k, path)| {
                     let space = if shape::is_closed(path) { space } else { 0.0 };
@@ -160,7 +161,7 @@ impl WordArt {
                 let cuts: Vec<f64> = cuts.iter().map(|y| y - rect.y0).collect();
                 let found = shape::least_distorting(at_origin.frame, |b| {
                     let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
-                    let rows = at_origin.rows(guides(b.width(), b.height())?, &cuts, b, &mut built)?;
+                    let rows = at_origin.band_maps(guides(b.width(), b.height())?, &cuts, b, &mut built)?;
                     Ok::<_, Error>(rows.and_then(|rows| Tiled::over(at_origin.frame, cuts.clone(), rows)))
                 })?;
                 Ok(found + rect.origin().to_vec2())
@@ -170,36 +171,35 @@ impl WordArt {
 
     /// Returns the deformation with a larger frame, whose map into the shape leaves the padding between the artwork and the guides.
     fn padded(&self, guides: Guides, cuts: &[f64], shape_box: Rect) -> Result<Self, Error> {
-        /// Samples of a guide.
         const SAMPLES: usize = 128;
         let (rect, last) = (self.frame, cuts.len());
         if self.padding == 0.0 || matches!(guides, Guides::Along(_)) {
             return Ok(self.clone());
         }
-        let rows = self.rows(guides, cuts, shape_box, &mut Built::new(Arc::new(AffineMap::IDENTITY)))?;
+        let rows = self.band_maps(guides, cuts, shape_box, &mut Built::new(Arc::new(AffineMap::IDENTITY)))?;
         let Some(map) = rows.and_then(|rows| Tiled::over(rect, cuts.to_vec(), rows)) else { return Ok(self.clone()) };
         let image_of_row = |y: f64| -> Vec<Point> {
             let x = |i: usize| rect.x0 + rect.width() * i as f64 / SAMPLES as f64;
             (0..=SAMPLES).map(|i| map.point(Point::new(x(i), y))).collect()
         };
         let length = |ps: &[Point]| ps.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
-        // The padding as fractions of the length and of the heights of the outer bands. Lines between bands are guides, too.
-        let (mut of_length, mut of_heights) = (0f64, [0.0; 2]);
-        for (k, of_height) in [0, last].into_iter().zip(&mut of_heights) {
+        // The padding as shares of the guides' length, and of the height of the first and the last band. Inner bands get no padding.
+        let (mut x_share, mut y_shares) = (0f64, [0.0; 2]);
+        for (k, y_share) in [0, last].into_iter().zip(&mut y_shares) {
             let band = self.band(cuts, k);
             let [top, bottom] = [1e-12, 1.0 - 1e-12].map(|v| image_of_row(band.y0 + v * band.height()));
             let least = top.iter().zip(&bottom).map(|(p, q)| p.distance(*q)).fold(f64::INFINITY, f64::min);
-            of_length = of_length.max(self.padding / length(&top).min(length(&bottom)));
-            *of_height = self.padding / least;
+            x_share = x_share.max(self.padding / length(&top).min(length(&bottom)));
+            *y_share = self.padding / least;
         }
         // A single band is padded on both sides.
         let sides = if last == 0 { 2.0 } else { 1.0 };
-        if !(of_length < 0.5 && of_heights.iter().all(|of_height| sides * of_height < 1.0)) {
+        if !(x_share < 0.5 && y_shares.iter().all(|share| sides * share < 1.0)) {
             return Err(Error::usage("padding", self.padding.to_string(), "leaves nothing of the shape"));
         }
-        let growth = |k: usize, of_height: f64| self.band(cuts, k).height() * of_height / (1.0 - sides * of_height);
-        let wide = rect.inflate(rect.width() * of_length / (1.0 - 2.0 * of_length), 0.0);
-        let frame = Rect { y0: rect.y0 - growth(0, of_heights[0]), y1: rect.y1 + growth(last, of_heights[1]), ..wide };
+        let growth = |k: usize, share: f64| self.band(cuts, k).height() * share / (1.0 - sides * share);
+        let wide = rect.inflate(rect.width() * x_share / (1.0 - 2.0 * x_share), 0.0);
+        let frame = Rect { y0: rect.y0 - growth(0, y_shares[0]), y1: rect.y1 + growth(last, y_shares[1]), ..wide };
         Ok(Self { frame, ..self.clone() })
     }
 
@@ -211,7 +211,7 @@ impl WordArt {
     }
 
     /// Returns the maps of the bands; `None` if a guide has no length.
-    fn rows(
+    fn band_maps(
         &self,
         guides: Guides,
         cuts: &[f64],
@@ -224,12 +224,12 @@ impl WordArt {
         let drawn = |segs: &[Seg]| -> BezPath { outline(segs).to_bez_path(tolerance) };
         match guides {
             Guides::Between(pairs) => {
-                let along = if self.by_parameter { Along::Parameter } else { Along::ArcLength };
+                let pace = if self.by_parameter { GuidePace::Parameter } else { GuidePace::ArcLength };
                 let row = |(k, [top, bottom]): (usize, &[Vec<Seg>; 2])| {
                     let (top, bottom) = (moved(top), moved(bottom));
                     built.overlay(Role::Cage, drawn(&top));
                     built.overlay(Role::Cage, drawn(&bottom));
-                    tiled::ruled_row(self.band(cuts, k), &Guide::new(&top, along)?, &Guide::new(&bottom, along)?)
+                    tiled::ruled_row(self.band(cuts, k), &Guide::new(&top, pace)?, &Guide::new(&bottom, pace)?)
                 };
                 Ok(pairs.iter().enumerate().map(row).collect())
             }
@@ -249,14 +249,13 @@ impl WordArt {
 
     /// Stands a band of artwork on `path`: true to size if the box was fitted to the artwork, else scaled to the path's length.
     fn standing(&self, path: &[Seg], band: Rect) -> Result<Built, Error> {
-        // In a given box, the artwork is scaled to the path's length.
         let scale = if self.shape_box == ShapeBox::Fit { 1.0 } else { shape::length(path) / band.width() };
         let bend = Bend::new(band, &outline(path)).baseline(band.y1 + self.padding / scale).as_drawn(true);
-        let loose = || shape::is_loose(path, band.width(), band.height(), word_space(&self.letters).unwrap_or(0.0));
+        let is_loose = || shape::is_loose(path, band.width(), band.height(), word_space(&self.letters).unwrap_or(0.0));
         match self.shape_box {
-            // Short text stands around the top.
-            ShapeBox::Fit if shape::is_closed(path) && loose() => {
-                bend.even(true).offset((shape::top(path) - 0.5) * shape::mid_length(path, band.height()))
+            // Text that leaves more of the path free is centred on its top; other text begins at the path's start.
+            ShapeBox::Fit if shape::is_closed(path) && is_loose() => {
+                bend.even(true).offset((shape::share_at_top(path) - 0.5) * shape::mid_length(path, band.height()))
             }
             ShapeBox::Fit if shape::is_closed(path) => bend.even(true).align(Align::Start),
             ShapeBox::Fit => bend.even(true),
@@ -403,13 +402,13 @@ let = [\"y = adj*h/100000\"]\n  bands = [[\"M 0,y Q w/2,-y w,y\", \"M 0,h L w,h\
         Case { args: &[("preset", "triangle")], at: (0.0, 0.0), to: (0.0, 50.0), tolerance: 1e-12 },
         Case { args: &[("preset", "triangle")], at: (50.0, 0.0), to: (50.0, 0.0), tolerance: 1e-12 },
         Case { args: &[("preset", "triangle")], at: (75.0, 50.0), to: (75.0, 62.5), tolerance: 1e-12 },
-        // Half a circle: a quarter of the way is 45 degrees.
         Case {
             args: &[("preset", "can-up"), ("adj", "70000")],
             at: (50.0, 0.0),
             to: (50.0, 0.0),
             tolerance: 1e-9,
         },
+        // Half a circle: a quarter of the way is 45 degrees.
         Case {
             args: &[("preset", "arch-up"), ("box", "artwork")],
             at: (25.0, 100.0),

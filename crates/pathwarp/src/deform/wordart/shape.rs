@@ -248,7 +248,7 @@ pub(super) fn side(guide: &[Seg], width: f64, height: f64) -> f64 {
 }
 
 /// Returns the distance along a guide of its highest point on the screen, as a fraction of its length.
-pub(super) fn top(guide: &[Seg]) -> f64 {
+pub(super) fn share_at_top(guide: &[Seg]) -> f64 {
     let (mut top_y, mut distance, mut before) = (f64::INFINITY, 0.0, 0.0);
     for s in guide {
         if let Some((u, y)) = samples().map(|(u, _)| (u, s.eval(u).y)).min_by(|a, b| a.1.total_cmp(&b.1))

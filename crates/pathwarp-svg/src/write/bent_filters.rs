@@ -1,4 +1,5 @@
-//! Replaces filters that cannot follow a map by pictures: of the filter's drawing beneath and above the graphic, or of both together.
+//! Replaces filters by pictures where the affine fit of their slot, with which they move, looks different from the map: pictures of the
+//! filter's drawing beneath and above the graphic, or of both together.
 
 use super::boxes;
 use super::fragment::Writer;
@@ -19,7 +20,7 @@ use std::sync::Arc;
 use usvg::filter::{Filter, Kind, Primitive};
 use usvg::{BlendMode, Paint, Stop};
 
-/// The results for the filters of a drawing, by the index of their slot. Filters without one follow the fit and look different.
+/// The results for the filters of a drawing, by the index of their slot. Filters without one follow the slot's fit and look different.
 pub(crate) fn outcomes(input: &WriteInput<'_>) -> BTreeMap<usize, FilterOutcome> {
     let mut groups = Vec::new();
     if input.bends.each.iter().any(|b| b.options.filters != Filters::Affine) {
@@ -30,8 +31,8 @@ pub(crate) fn outcomes(input: &WriteInput<'_>) -> BTreeMap<usize, FilterOutcome>
     }
     let unbent = BentDrawing::unbent(input.scene);
     let original = WriteInput::new(input.drawing, &unbent, input.bends);
-    let outcome = |(slot, g): &(usize, &Group)| Some((*slot, outcome(input, &original, (*slot, *g), groups.len())?));
-    groups.iter().filter_map(outcome).collect()
+    let with_slot = |&(slot, g): &(usize, &Group)| Some((slot, outcome(input, &original, (slot, g), groups.len())?));
+    groups.iter().filter_map(with_slot).collect()
 }
 
 /// Lists the groups with filters that have a slot, with its index.
@@ -50,7 +51,7 @@ fn drawing(input: &WriteInput<'_>, g: &Group, layer: Option<&Layer>, view: Rect)
     Writer::new(*input, false, &mut skipped, &mut notes).layer_drawing(g, layer, view)
 }
 
-/// The result for the filters of one of `among` groups. Returns `None` if they follow the fit and look different.
+/// The result for the filters of one of `among` groups, which share the painter's pixels. `None` if they follow the fit and look different.
 fn outcome(
     input: &WriteInput<'_>,
     original: &WriteInput<'_>,
@@ -97,6 +98,7 @@ fn outcome(
         page: input.drawing.view_box().area() / to_root.determinant().abs(),
         among,
     };
+    // Without pictures, the fit looks right.
     let Some(mut pictures) = painter.filter(&request).ok()?.map(Vec::into_iter) else {
         return Some(FilterOutcome::Fits);
     };
@@ -107,9 +109,9 @@ fn outcome(
     next().map(FilterOutcome::Whole)
 }
 
-/// Returns `true` if the fit moves the drawing of filters by less than is visible from where the map takes it: if they only move and blur,
-/// and the map hardly bends over that distance. `content` is the box of the graphic, `area` that of the drawing, and `bending` the change
-/// of a unit in px.
+/// Returns `true` if the fit takes the drawing of filters so close to where the map takes it that no one sees the difference: if they only
+/// move and blur, and the map hardly bends over that distance. `content` is the box of the graphic, `area` that of the drawing, and
+/// `bending` the change of a unit in px.
 fn moves_little(g: &Group, (content, area): (Rect, Rect), bending: f64) -> bool {
     /// Largest invisible distance, in px.
     const INVISIBLE: f64 = 0.5;
