@@ -85,13 +85,14 @@ impl Area {
     /// ```
     #[must_use]
     pub fn lines_outside(&self, lines: &Outline, tolerance: f64) -> Outline {
-        let edges: Vec<(PathSeg, Rect)> = self.path().segments().map(|s| (s, s.bounding_box())).collect();
+        let path = self.path();
+        let edges: Vec<(PathSeg, Rect)> = path.segments().map(|s| (s, s.bounding_box())).collect();
         let mut out = Outline::default();
         for line in &lines.subpaths {
             let mut parts = vec![Vec::new()];
             for seg in &line.segs {
                 let (mut from, mut pieces) = (0.0, Vec::new());
-                let distance = |t: f64| signed_distance(&edges, seg.eval(t));
+                let distance = |t: f64| signed_distance(&path, &edges, seg.eval(t));
                 cut_by_sign(&distance, largest_speed(seg), [0.0, 1.0], tolerance, &mut pieces);
                 for (to, is_outside) in pieces {
                     match parts.last_mut().filter(|_| is_outside) {
@@ -311,17 +312,16 @@ fn largest_speed(seg: &Seg) -> f64 {
 }
 
 /// Returns the distance of a point from the edges of an area, negative inside. Edges come with their bounding boxes.
-fn signed_distance(edges: &[(PathSeg, Rect)], p: Point) -> f64 {
+fn signed_distance(path: &BezPath, edges: &[(PathSeg, Rect)], p: Point) -> f64 {
     const ACCURACY: f64 = 1e-9;
-    let (mut nearest, mut winding) = (f64::INFINITY, 0);
+    let mut nearest = f64::INFINITY;
     for (edge, bounds) in edges {
-        winding += edge.winding(p);
         let apart = Vec2::new(p.x - p.x.clamp(bounds.x0, bounds.x1), p.y - p.y.clamp(bounds.y0, bounds.y1));
         if apart.hypot2() < nearest {
             nearest = edge.nearest(p, ACCURACY).distance_sq.min(nearest);
         }
     }
-    if winding == 0 { nearest.sqrt() } else { -nearest.sqrt() }
+    if path.winding(p) == 0 { nearest.sqrt() } else { -nearest.sqrt() }
 }
 
 /// Divides the interval `[from, to]` where `distance` changes its sign: adds the ends of pieces, with `true` for positive ones. The
