@@ -84,6 +84,7 @@ pub mod engine {
     pub use crate::map::bspline;
     pub use crate::map::called::{Abilities, Ask, Called, Callee};
     pub use crate::map::joint::Joint;
+    pub use crate::outline::marching_squares::{GridEdge, marching_squares};
     pub use crate::recipe::{BuiltParts, Portion};
     pub use crate::refit::KnownShapes;
     pub use crate::refit::borders::Borders;

@@ -371,7 +371,7 @@ impl SvgArtwork {
         options: &WarpOptions,
         warped: &WarpedDocument,
     ) -> Result<(HashMap<&str, Fold>, Vec<String>), Error> {
-        // What would overlap in a view in space lies behind other parts, and is cut away.
+        // A view in space cuts away the parts that would overlap, which lie behind others.
         if options.hidden.is_some() {
             return Ok((HashMap::new(), Vec::new()));
         }

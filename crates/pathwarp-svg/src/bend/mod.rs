@@ -5,7 +5,6 @@ pub(crate) mod drawing;
 pub(crate) mod fits;
 pub(crate) mod gradient_fit;
 pub(crate) mod gradients;
-mod hidden;
 pub(crate) mod line;
 mod meshes;
 pub(crate) mod options;

@@ -1,14 +1,14 @@
 //! A part to warp, with everything that determines its image.
 
 use super::bends::Bend;
-use super::hidden;
 use super::options::WarpOptions;
 use super::path::{self, Digits, ROUNDING, allowed, with_arcs};
 use super::seam::without_seams;
+use super::united::AREA_SHARE;
 use crate::scene::areas::stroke_extent;
 use crate::scene::drawing::Drawing;
 use crate::scene::geometry::stretch;
-use crate::scene::model::Part;
+use crate::scene::model::{Part, PartRole};
 use crate::scene::selected_lettering::{LetterSubpaths, letters_by_part};
 use crate::source::number::arcs_data;
 use pathwarp::edit::Area;
@@ -19,6 +19,7 @@ use pathwarp::refit::{self, Nodes, PathReport, RefittedPath, suited};
 use pathwarp::{GeometryError, Outline};
 use std::ops::Range;
 use std::sync::Arc;
+use usvg::FillRule;
 
 /// Settings that the parts under one map share.
 #[derive(Clone, Copy)]
@@ -103,7 +104,7 @@ impl<'a> PartTask<'a> {
             back: write.inverse(),
             pieces,
             whole,
-            hidden: options.hidden.as_deref().filter(|hidden| hidden::meet(bounds, hidden)),
+            hidden: options.hidden.as_deref().filter(|hidden| boxes_meet(bounds, hidden)),
             outline,
             contours,
             whole_contours,
@@ -113,6 +114,31 @@ impl<'a> PartTask<'a> {
             decimals,
             rounding,
         }
+    }
+
+    /// Cuts the hidden part out of the outline to bend: out of the area of a fill without a stroke, otherwise out of the line.
+    pub(super) fn without_hidden(mut self) -> Result<Self, GeometryError> {
+        let Some(hidden) = self.hidden else { return Ok(self) };
+        let seen = match self.seen_fill()? {
+            Some(fill) if self.part.stroke.is_none() => fill,
+            _ => hidden.lines_outside(&self.outline, AREA_SHARE * self.finest),
+        };
+        (self.outline, self.contours) = (Arc::new(seen), Vec::new());
+        Ok(self)
+    }
+
+    /// Returns the area of the fill without what is hidden; `None` if there is no fill or nothing of it is hidden.
+    pub(super) fn seen_fill(&self) -> Result<Option<Outline>, GeometryError> {
+        let fill = self.part.fill.as_ref();
+        let even_odd = fill.is_some_and(|f| f.rule() == FillRule::EvenOdd);
+        let has_area = fill.is_some() || self.part.role == PartRole::Clip;
+        self.hidden.filter(|_| has_area).map(|hidden| self.seen_area(hidden, &self.whole, even_odd)).transpose()
+    }
+
+    /// Returns an area without its hidden part.
+    pub(super) fn seen_area(&self, hidden: &Area, outline: &Outline, even_odd: bool) -> Result<Outline, GeometryError> {
+        let fine = AREA_SHARE * self.finest;
+        Ok(Area::of(outline, even_odd, fine)?.difference(hidden, fine)?.outline().clone())
     }
 
     pub(super) fn options(&self) -> &'a WarpOptions {
@@ -201,6 +227,11 @@ impl<'a> PartTask<'a> {
         }
         path
     }
+}
+
+/// Returns `true` if the boxes of a part and of the hidden area meet.
+fn boxes_meet(part: Option<Rect>, hidden: &Area) -> bool {
+    part.zip(hidden.outline().bounding_box()).is_some_and(|(a, b)| a.overlaps(b))
 }
 
 /// The tolerances of the contours of every part, one for each subpath; empty for parts with the drawing's tolerance or with another bend

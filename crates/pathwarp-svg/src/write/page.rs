@@ -417,7 +417,7 @@ pub(super) fn arrivals(input: &WriteInput<'_>, shown: Rect) -> Vec<String> {
 
 /// Adds the elements of a group that lay off the page and now show in an area.
 fn add_arrivals(input: &WriteInput<'_>, g: &Group, (page, shown): (Rect, Rect), found: &mut BTreeSet<ElementId>) {
-    // What a mask lets through is not known.
+    // The visible part of masked content is not known.
     if g.opacity <= 0.0 || g.mask.is_some() {
         return;
     }

@@ -8,6 +8,7 @@
 //! Here an [`EllipticArc`] stays an arc until its image is fitted, so that the promised error is measured from the shape that was drawn.
 
 mod arc;
+pub(crate) mod marching_squares;
 mod stroke;
 mod svg;
 

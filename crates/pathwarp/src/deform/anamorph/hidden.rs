@@ -11,9 +11,9 @@
 
 use crate::map::{Class, Cost, Creases, Enclosure, Jet, Map, RationalBezier, forward_common};
 use crate::outline::Outline;
+use crate::outline::marching_squares::{GridEdge, marching_squares};
 use crate::refit;
 use kurbo::{Point, Rect, Vec2};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Cells along a side of the grid.
@@ -86,8 +86,7 @@ impl Sheet {
         let mut q = start;
         for _ in 0..STEPS {
             let jet = self.map.jet(q);
-            let off = image - jet.p;
-            let step = Vec2::new(off.cross(jet.dy), jet.dx.cross(off)) / jet.det();
+            let step = jet.inverted(q).push(image - jet.p);
             if !step.is_finite() || q.distance(start) > 8.0 * cell {
                 return None;
             }
@@ -128,9 +127,6 @@ fn in_box(r: Rect, i: f64, j: f64) -> Point {
     Point::new(r.x0 + r.width() * i / n, r.y0 + r.height() * j / n)
 }
 
-/// An edge of the traced grid: the left or upper end, and `true` if it runs down.
-type Edge = (usize, usize, bool);
-
 /// Traces the boundary of the hidden part.
 struct Tracing<'a> {
     sheet: &'a Sheet,
@@ -148,33 +144,21 @@ impl Tracing<'_> {
         let hides = |i: usize, j: usize| ![i, j].iter().any(|k| *k == 0 || *k == SIDE) && self.sheet.hides(at((i, j)));
         let known: Vec<bool> = (0..=SIDE).flat_map(|j| (0..=SIDE).map(move |i| hides(i, j))).collect();
         let hidden = |(i, j): (usize, usize)| known[j * (SIDE + 1) + i];
-        let crossing = |&(i, j, down): &Edge| {
-            let ends = [(i, j), if down { (i, j + 1) } else { (i + 1, j) }];
+        let crossing = |&(i, j, is_down): &GridEdge| {
+            let ends = [(i, j), if is_down { (i, j + 1) } else { (i + 1, j) }];
             let [a, b] = if hidden(ends[0]) { ends } else { [ends[1], ends[0]] };
             self.bisect(at(a), at(b))
         };
-        let mut next: BTreeMap<Edge, Edge> = BTreeMap::new();
-        for (i, j) in (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j))) {
-            let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(hidden);
-            let edges = [(i, j, false), (i + 1, j, true), (i, j + 1, false), (i, j, true)];
-            // The hidden part lies to the right of its boundary, which separates two hidden corners across from each other.
-            for k in (0..4).filter(|k| corners[*k] && !corners[(k + 3) % 4]) {
-                let turns = (1..4).find(|n| !corners[(k + n) % 4]).unwrap_or(1);
-                next.insert(edges[(k + turns + 3) % 4], edges[(k + 3) % 4]);
-            }
-        }
-        let mut loops = Vec::new();
-        while let Some((&start, _)) = next.first_key_value() {
-            let (mut polygon, mut edge, mut here) = (Vec::new(), start, crossing(&start));
-            while let Some(to) = next.remove(&edge) {
-                let there = crossing(&to);
+        let polygon = |edges: Vec<GridEdge>| {
+            let crossings: Vec<Point> = edges.iter().map(crossing).collect();
+            let mut polygon = Vec::new();
+            for (k, &here) in crossings.iter().enumerate() {
                 polygon.push(here);
-                self.divide([here, there], true, &mut polygon);
-                (edge, here) = (to, there);
+                self.divide([here, crossings[(k + 1) % crossings.len()]], true, &mut polygon);
             }
-            loops.push(polygon);
-        }
-        loops
+            polygon
+        };
+        marching_squares([SIDE; 2], |i, j| hidden((i, j))).into_iter().map(polygon).collect()
     }
 
     /// Returns a point of the boundary between a hidden point and one that is not.
@@ -194,10 +178,14 @@ impl Tracing<'_> {
     fn divide(&self, [a, b]: [Point; 2], first: bool, out: &mut Vec<Point>) {
         let across = Vec2::new(a.y - b.y, b.x - a.x) * 0.5;
         let [left, right] = [a.midpoint(b) + across, a.midpoint(b) - across];
-        if a.distance(b) < 4.0 * self.within || self.sheet.hides(left) == self.sheet.hides(right) {
+        if a.distance(b) < 4.0 * self.within {
             return;
         }
-        let between = if self.sheet.hides(left) { self.bisect(left, right) } else { self.bisect(right, left) };
+        let between = match [left, right].map(|p| self.sheet.hides(p)) {
+            [true, false] => self.bisect(left, right),
+            [false, true] => self.bisect(right, left),
+            _ => return,
+        };
         if first || between.distance(a.midpoint(b)) > self.within {
             self.divide([a, between], false, out);
             out.push(between);
